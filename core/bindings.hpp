@@ -1,0 +1,11 @@
+// Every kernel binds its own functions; bindings.cpp calls them all.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace mocapress {
+
+void bind_text(nanobind::module_& module);
+void bind_app(nanobind::module_& module);
+
+}  // namespace mocapress

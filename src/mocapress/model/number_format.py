@@ -1,0 +1,42 @@
+"""How a source printed the numbers of a column."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+
+class NumberKind(IntEnum):
+    """The rule that turns a value into text; the names of C's ``printf`` stand beside each."""
+
+    GENERAL = 0
+    """``%.{digits}g``: significant digits, no trailing zeros, an exponent below 1e-4."""
+    FIXED = 1
+    """``%.{digits}f``: always that many decimals."""
+    TRIMMED = 2
+    """``%.{digits}f`` without trailing zeros, and without the point where nothing follows it."""
+    SCIENTIFIC = 3
+    """``%.{digits}e``."""
+    SHORTEST = 4
+    """Fewest digits that give the same float64, as Python's ``repr`` prints it."""
+    SHORTEST32 = 5
+    """Fewest digits that give the same float32, laid out like ``SHORTEST``."""
+
+
+@dataclass(frozen=True, slots=True)
+class NumberFormat:
+    """The format of one column's numbers.
+
+    A value of a column with ``GENERAL``, ``FIXED``, ``TRIMMED`` or ``SCIENTIFIC`` format lies on a
+    decimal grid; a codec may code its index on that grid instead of the bits of the float.
+    """
+
+    kind: NumberKind
+    digits: int = 0
+    """Significant digits (``GENERAL``), decimals (the others); 0 and unused for ``SHORTEST``."""
+    exponent_digits: int = 2
+    """Least number of digits of an exponent: 2 as C prints it, 3 as older Windows libraries do."""
+    point_zero: bool = False
+    """Whether a whole number ends in ``.0`` (``TRIMMED``, ``SHORTEST``)."""
+    bare_point: bool = False
+    """Whether the zero before the point is left out: ``.5``."""
+    upper: bool = False
+    """Whether the exponent is written ``E``."""
