@@ -1,5 +1,73 @@
-"""Store, play and search motion capture."""
+"""Store, play and search motion capture.
 
+>>> import mocapress as mp
+>>> clip = mp.read("samples/cmu_01_01.amc")
+>>> blob = mp.compress("samples/cmu_01_01.amc")
+>>> mp.decompress(blob) == open("samples/cmu_01_01.amc", "rb").read()
+True
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from mocapress.errors import (
+    CorruptError,
+    FormatError,
+    MocapressError,
+    ParameterError,
+    UnsupportedError,
+    VerificationError,
+)
 from mocapress.version import __version__
 
-__all__ = ["__version__"]
+if TYPE_CHECKING:
+    from mocapress.api import compress, decompress, load, read, write
+    from mocapress.codecs import codec
+    from mocapress.convert import to_amc_clip, to_bvh_clip
+    from mocapress.model import Clip, Column, Joint, NumberFormat, Skeleton
+    from mocapress.model.kinematics import positions, rotations
+
+__all__ = [
+    "Clip",
+    "Column",
+    "CorruptError",
+    "FormatError",
+    "Joint",
+    "MocapressError",
+    "NumberFormat",
+    "ParameterError",
+    "Skeleton",
+    "UnsupportedError",
+    "VerificationError",
+    "__version__",
+    "codec",
+    "compress",
+    "decompress",
+    "load",
+    "positions",
+    "read",
+    "rotations",
+    "to_amc_clip",
+    "to_bvh_clip",
+    "write",
+]
+
+# NumPy and the extension are loaded when they are first needed: importing mocapress stays quick.
+_LAZY = {
+    **dict.fromkeys(("compress", "decompress", "load", "read", "write"), "mocapress.api"),
+    "codec": "mocapress.codecs",
+    **dict.fromkeys(("to_amc_clip", "to_bvh_clip"), "mocapress.convert"),
+    **dict.fromkeys(("Clip", "Column", "Joint", "NumberFormat", "Skeleton"), "mocapress.model"),
+    **dict.fromkeys(("positions", "rotations"), "mocapress.model.kinematics"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LAZY:
+        msg = f"module 'mocapress' has no attribute {name!r}"
+        raise AttributeError(msg)
+    return getattr(import_module(_LAZY[name]), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

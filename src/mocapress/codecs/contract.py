@@ -42,7 +42,7 @@ class Model:
 
 
 class Codec(Protocol):
-    """A codec: a frozen dataclass whose fields are its parameters, with the defaults it is known by.
+    """A codec: a frozen dataclass whose fields are its parameters, with their usual values.
 
     ``encode`` and ``decode`` are pure functions of their arguments and the parameters: the same
     bytes on every run and every machine.

@@ -1,0 +1,42 @@
+"""The compiled kernels."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+# Row templates are (counter, literals, columns, widths); formats are (C, 6) uint8: kind, digits,
+# exponent_digits, point_zero, bare_point, upper; see core/rows.hpp and core/number_text.hpp.
+_Template = tuple[bool, list[bytes], list[int], list[int]]
+
+def parse_rows(
+    data: bytes, begin: int, counter: bool, words: list[bytes], counts: list[int], most_rows: int
+) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.int64],
+    NDArray[np.uint64],
+    NDArray[np.uint8],
+    int,
+    int,
+    int,
+]: ...
+def match_rows(
+    data: bytes,
+    offsets: NDArray[np.uint64],
+    counters: NDArray[np.int64],
+    values: NDArray[np.float64],
+    selected: NDArray[np.int64],
+    template: _Template,
+    formats: NDArray[np.uint8],
+) -> tuple[NDArray[np.uint8], NDArray[np.uint64], NDArray[np.uint32], list[bytes]]: ...
+def print_rows(
+    values: NDArray[np.float64],
+    counters: NDArray[np.int64],
+    assigned: NDArray[np.int32],
+    templates: list[_Template],
+    formats: NDArray[np.uint8],
+    cell_rows: NDArray[np.uint64],
+    cell_slots: NDArray[np.uint32],
+    cells: list[bytes],
+    raw: list[bytes],
+    most_bytes: int,
+) -> bytes: ...
+def snap(values: NDArray[np.float64], format: list[int]) -> NDArray[np.float64]: ...

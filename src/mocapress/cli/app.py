@@ -1,0 +1,172 @@
+"""Commands and their options; what they do is in the modules beside this one."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mocapress.version import __version__
+
+app = typer.Typer(
+    help="Store, play and search motion capture: AMC, ASF and BVH, restored byte for byte.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+bench_app = typer.Typer(help="Measure codecs on clips.", no_args_is_help=True)
+app.add_typer(bench_app, name="bench")
+
+Inputs = Annotated[
+    list[Path], typer.Argument(help="Files or folders; - is stdin.", show_default=False)
+]
+Output = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", help="File, or folder for many; - is stdout.", metavar="PATH"),
+]
+Jobs = Annotated[int, typer.Option("-j", "--jobs", min=1, help="Files at a time.")]
+Force = Annotated[bool, typer.Option("--force", "-f", help="Overwrite existing files.")]
+Json = Annotated[bool, typer.Option("--json", help="Results as JSON on stdout.")]
+Asf = Annotated[
+    Path | None,
+    typer.Option("--asf", help="Skeleton of the AMC files; else the ASF beside each.", metavar="F"),
+]
+Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks.", hidden=True)]
+
+
+def _version(value: bool) -> None:
+    if value:
+        typer.echo(f"mocapress {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+    debug: Debug = False,
+) -> None:
+    """Store, play and search motion capture: AMC, ASF and BVH, restored byte for byte.
+
+    Exit codes: 0 done, 1 bad input, 2 wrong usage, 3 verification failed.
+    """
+    _ = version, debug
+
+
+@app.command()
+def compress(
+    inputs: Inputs,
+    output: Output = None,
+    codec: Annotated[
+        str, typer.Option("--codec", help="Codec, e.g. app:t=15,table=k3-non-uniform.")
+    ] = "app",
+    asf: Asf = None,
+    embed_asf: Annotated[
+        bool, typer.Option("--embed-asf", help="Store the skeleton of AMC files, too.")
+    ] = False,
+    jobs: Jobs = 1,
+    force: Force = False,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Compress motion files to .mcz; each is decoded again and compared before it is written."""
+    from mocapress.cli.coding import compress_files
+
+    compress_files(
+        inputs, output, codec, asf=asf, embed_asf=embed_asf, jobs=jobs, force=force, json=json
+    )
+
+
+@app.command()
+def decompress(
+    inputs: Inputs,
+    output: Output = None,
+    jobs: Jobs = 1,
+    force: Force = False,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Restore the original files, byte for byte."""
+    from mocapress.cli.coding import decompress_files
+
+    decompress_files(inputs, output, jobs=jobs, force=force, json=json)
+
+
+@app.command()
+def verify(inputs: Inputs, jobs: Jobs = 1, json: Json = False, debug: Debug = False) -> None:
+    """Decode .mcz files and check every checksum; exit code 3 when one is damaged."""
+    from mocapress.cli.coding import verify_files
+
+    verify_files(inputs, jobs=jobs, json=json)
+
+
+@app.command()
+def info(
+    inputs: Inputs, asf: Asf = None, jobs: Jobs = 1, json: Json = False, debug: Debug = False
+) -> None:
+    """Say what is in motion files and .mcz files."""
+    from mocapress.cli.info import show_info
+
+    show_info(inputs, asf=asf, jobs=jobs, json=json)
+
+
+class Target(StrEnum):
+    """Formats to convert to."""
+
+    BVH = "bvh"
+    AMC = "amc"
+
+
+@app.command()
+def convert(
+    inputs: Inputs,
+    output: Output = None,
+    to: Annotated[
+        Target | None, typer.Option("--to", help="Format; else what the output's name says.")
+    ] = None,
+    asf: Asf = None,
+    fps: Annotated[
+        float | None,
+        typer.Option("--fps", help="Frames per second of an AMC, which does not say.", min=1e-3),
+    ] = None,
+    jobs: Jobs = 1,
+    force: Force = False,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Convert between AMC with ASF and BVH; joint positions stay, nothing is rescaled."""
+    from mocapress.cli.convert import convert_files
+
+    convert_files(
+        inputs, output, to and to.value, asf=asf, fps=fps, jobs=jobs, force=force, json=json
+    )
+
+
+@bench_app.command("lossless")
+def bench_lossless(
+    corpus: Annotated[
+        Path | None, typer.Argument(help="Folder of clips; else the samples of a checkout.")
+    ] = None,
+    json: Annotated[
+        Path | None, typer.Option("--json", help="Write all rows to this file.", metavar="FILE")
+    ] = None,
+    markdown: Annotated[
+        Path | None, typer.Option("--markdown", help="Write the tables here.", metavar="FILE")
+    ] = None,
+    plots: Annotated[
+        Path | None, typer.Option("--plots", help="Draw the figures here.", metavar="FOLDER")
+    ] = None,
+    only: Annotated[
+        str, typer.Option("--only", help="Codecs and tools, with commas between; else all.")
+    ] = "",
+    repeat: Annotated[int, typer.Option("--repeat", min=1, help="Take the best of N times.")] = 1,
+    force: Force = False,
+    debug: Debug = False,
+) -> None:
+    """Compare every lossless codec with each other and with general-purpose tools."""
+    from mocapress.cli.bench import bench_lossless_files
+
+    bench_lossless_files(
+        corpus, json=json, markdown=markdown, plots=plots, only=only, repeat=repeat, force=force
+    )

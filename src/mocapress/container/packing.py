@@ -1,0 +1,78 @@
+"""General-purpose compression of bytes, for texts and for files that are not motion."""
+
+import lzma
+import zlib
+from functools import cache
+from importlib import resources
+
+from mocapress.binary import Reader, Writer
+from mocapress.errors import CorruptError
+
+_STORED, _LZMA, _DEFLATE = range(3)
+
+
+def pack(data: bytes) -> bytes:
+    """Pack bytes by the method that makes them smallest."""
+    # Literal context 4 and no position bits suit text, the default suits binary data.
+    filters = [_lzma_filter(len(data), text=True), _lzma_filter(len(data), text=False)]
+    candidates = [(_STORED, data)]
+    candidates += [
+        (_LZMA, lzma.compress(data, lzma.FORMAT_RAW, filters=[chain]))
+        for chain in (filters if len(data) < 2**16 else filters[:1])
+    ]
+    if len(data) < 2**16:
+        deflate = zlib.compressobj(9, zlib.DEFLATED, -15, 9, zdict=_dictionary())
+        candidates.append((_DEFLATE, deflate.compress(data) + deflate.flush()))
+    method, packed = min(candidates, key=lambda candidate: len(candidate[1]))
+    writer = Writer()
+    writer.integer(method)
+    writer.integer(len(data))
+    return bytes(writer.data) + packed
+
+
+def unpack(data: bytes | memoryview, section: str, most_bytes: int = 2**62) -> bytes:
+    """Undo ``pack``.
+
+    Raises
+    ------
+    CorruptError
+        When the data is not what ``pack`` makes, or would give more than ``most_bytes``.
+
+    """
+    reader = Reader(data, section)
+    method = reader.integer(_DEFLATE)
+    size = reader.integer(most_bytes)
+    packed = reader.raw(len(data) - reader.position)
+    try:
+        if method == _STORED:
+            unpacked, complete = packed, True
+        elif method == _LZMA:
+            decoder = lzma.LZMADecompressor(
+                lzma.FORMAT_RAW, filters=[_lzma_filter(size, text=True)]
+            )
+            unpacked = decoder.decompress(packed, max_length=size + 1)
+            if not decoder.eof and len(unpacked) == size:
+                unpacked += decoder.decompress(b"", max_length=1)
+            complete = decoder.eof and not decoder.unused_data
+        else:
+            inflate = zlib.decompressobj(-15, zdict=_dictionary())
+            unpacked = inflate.decompress(packed, size + 1)
+            complete = inflate.eof and not inflate.unused_data
+    except (lzma.LZMAError, zlib.error, EOFError) as error:
+        raise CorruptError(f"{section}: cannot be unpacked ({error})") from error
+    if len(unpacked) != size or not complete:
+        raise CorruptError(
+            f"{section}: unpacks to another size", expected=str(size), found=str(len(unpacked))
+        )
+    return unpacked
+
+
+def _lzma_filter(size: int, *, text: bool) -> dict[str, int]:
+    dictionary = min(max(1 << (size - 1).bit_length() if size else 0, 2**12), 2**26)
+    chain = {"id": lzma.FILTER_LZMA2, "preset": 9 | lzma.PRESET_EXTREME, "dict_size": dictionary}
+    return chain | {"lc": 4, "lp": 0, "pb": 0} if text else chain
+
+
+@cache
+def _dictionary() -> bytes:
+    return resources.files(__package__).joinpath("dictionary1.bin").read_bytes()

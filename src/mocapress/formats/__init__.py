@@ -1,0 +1,1 @@
+"""Motion files: AMC with ASF, and BVH; read, written, and taken apart byte for byte."""

@@ -1,0 +1,161 @@
+"""AMC: the motion of an Acclaim skeleton, one line per bone and frame."""
+
+import re
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress.errors import FormatError
+from mocapress.formats.layout import Slot
+from mocapress.formats.rows import Body, RowShape, joined, read_rows, row_error
+from mocapress.model import Clip, Skeleton
+from mocapress.model.columns import bone_columns
+
+# A line that holds a frame's number and nothing else.
+_COUNTER = re.compile(rb"^[ \t]*\d+[ \t]*\r?$", re.MULTILINE)
+_TOKEN = re.compile(rb"\S+")
+
+
+def read_body(data: bytes, file: str | None = None) -> tuple[Body, RowShape, FormatError | None]:
+    """Read the frames; the error says why reading stopped before the end of the file.
+
+    A bone that a frame leaves out keeps its values of the frame before.
+
+    Raises
+    ------
+    FormatError
+        When not even one frame can be read.
+
+    """
+    first = _COUNTER.search(data)
+    if first is None:
+        raise FormatError("no frame", file=file, expected="a line with a frame's number")
+    shape = _row_shape(data, first.start(), file)
+    bodies: list[Body] = []
+    begin = first.start()
+    while True:
+        body = read_rows(data, begin, shape)
+        if len(body.values):
+            bodies.append(body)
+        begin = int(body.offsets[-1])
+        if body.stop == "end of data":
+            break
+        partial = _partial_rows(data, begin, shape, bodies[-1].values[-1]) if bodies else None
+        if partial is None:
+            break
+        bodies.append(partial)
+        begin = int(partial.offsets[-1])
+    error = None
+    if body.stop != "end of data":
+        frame = 1 + sum(len(b.values) for b in bodies)
+        error = row_error(data, body, file, frame, _expected(body, shape))
+    if not bodies:
+        raise error or FormatError("no frame", file=file)
+    return joined(bodies), shape, error
+
+
+def clip_of(
+    body_values: NDArray[np.float64],
+    shape: RowShape,
+    header: bytes,
+    skeleton: Skeleton | None,
+    name: str = "",
+) -> Clip:
+    """Make the clip; angles are in the unit that the header names, else the skeleton's."""
+    bones = [
+        (word.decode("latin-1"), count)
+        for word, count in zip(shape.words, shape.counts, strict=True)
+    ]
+    radians = re.search(rb"^\s*:radians", header, re.MULTILINE | re.IGNORECASE)
+    degrees = re.search(rb"^\s*:degrees", header, re.MULTILINE | re.IGNORECASE)
+    angle_unit = "rad" if radians else "deg" if degrees else None
+    return Clip(body_values, bone_columns(skeleton, bones, angle_unit), None, skeleton, name)
+
+
+def slots_of_row(text: bytes, shape: RowShape) -> list[Slot]:
+    """Find the numbers in a row's bytes."""
+    lines = _lines(text)
+    first = _first_columns(shape)
+    regular = tuple(tokens[0].group() for tokens in lines[1:]) == shape.words
+    found: list[Slot] = [(-1, *lines[0][0].span())]
+    column = 0
+    for tokens in lines[1:]:
+        if not regular:
+            column = first[tokens[0].group()]
+        found += [(column + k, *token.span()) for k, token in enumerate(tokens[1:])]
+        column += len(tokens) - 1
+    return found
+
+
+def _first_columns(shape: RowShape) -> dict[bytes, int]:
+    starts = np.cumsum((0, *shape.counts)).tolist()
+    return dict(zip(shape.words, starts, strict=False))
+
+
+def _lines(text: bytes, begin: int = 0) -> list[list[re.Match[bytes]]]:
+    lines: list[list[re.Match[bytes]]] = []
+    for line in re.compile(rb"[^\n]+").finditer(text, begin):
+        tokens = list(_TOKEN.finditer(text, *line.span()))
+        if tokens and not tokens[0].group().startswith(b"#"):
+            lines.append(tokens)
+    return lines
+
+
+def _row_text(data: bytes, begin: int) -> bytes:
+    counter = _COUNTER.search(data, begin)
+    following = _COUNTER.search(data, counter.end()) if counter else None
+    return data[begin : following.start() if following else len(data)]
+
+
+def _row_shape(data: bytes, begin: int, file: str | None) -> RowShape:
+    lines = _lines(_row_text(data, begin))[1:]
+    words = tuple(tokens[0].group() for tokens in lines)
+    counts = tuple(len(tokens) - 1 for tokens in lines)
+    if not sum(counts):
+        raise FormatError(
+            "the first frame cannot be read",
+            file=file,
+            line=data.count(b"\n", 0, begin) + 1,
+            expected="lines with a bone and its numbers",
+        )
+    return RowShape(True, words, counts)
+
+
+def _partial_rows(
+    data: bytes, begin: int, shape: RowShape, before: NDArray[np.float64]
+) -> Body | None:
+    """Read rows that leave out bones or have them in another order, where it is that."""
+    lines = _lines(_row_text(data, begin))[1:]
+    words = tuple(tokens[0].group() for tokens in lines)
+    counts = dict(zip(shape.words, shape.counts, strict=True))
+    repeated = len(set(words)) < len(words) or len(counts) < len(shape.words)
+    if words == shape.words or repeated or not set(words) <= set(counts):
+        return None
+    part = read_rows(data, begin, RowShape(True, words, tuple(counts[word] for word in words)))
+    if not len(part.values):
+        return None
+    first = _first_columns(shape)
+    columns = np.concatenate(
+        [np.arange(first[word], first[word] + counts[word]) for word in words] or [np.arange(0)]
+    )
+    values = np.tile(before, (len(part.values), 1))
+    values[:, columns] = part.values
+    statistics = np.zeros((shape.columns, 8), np.uint8)
+    statistics[:, 0] = 255
+    statistics[columns] = part.statistics
+    return Body(
+        values,
+        part.counters,
+        part.offsets,
+        statistics,
+        part.stop,
+        part.error_offset,
+        part.error_item,
+    )
+
+
+def _expected(body: Body, shape: RowShape) -> str:
+    if body.stop == "line end" or body.stop == "number":
+        bone = shape.words[body.error_item].decode("latin-1")
+        return f"{shape.counts[body.error_item]} numbers for bone {bone}"
+    return f"bone {shape.words[body.error_item].decode('latin-1')}"

@@ -1,0 +1,383 @@
+"""Everything of a motion file that is not a number, so that bytes come back as they were.
+
+``layout.split(...)`` is each format's own (``amc``, ``bvh``); here is what they share: templates of
+rows, the numbers that are not written as their column is, and the way back to bytes.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress import _core
+from mocapress.binary import Reader, Writer
+from mocapress.errors import CorruptError
+from mocapress.formats.number_formats import detect, packed
+from mocapress.formats.rows import Body
+from mocapress.model.number_format import NumberFormat, NumberKind
+
+_MOST_TEMPLATES = 64
+_SAMPLE = 48
+
+Slot = tuple[int, int, int]
+"""A number in a row's bytes: its column (-1: the frame's number), where it begins and ends."""
+
+
+@dataclass(frozen=True, slots=True)
+class RowTemplate:
+    """The bytes of one kind of row around its numbers."""
+
+    counter: bool
+    """Whether the first slot is the frame's number."""
+    literals: tuple[bytes, ...]
+    """One before every slot and one behind the last."""
+    columns: tuple[int, ...]
+    """Column of each slot."""
+    widths: tuple[int, ...]
+    """Width to which a slot's number is padded on the left, 0 for none."""
+
+    def as_tuple(self) -> tuple[bool, list[bytes], list[int], list[int]]:
+        """Give it as the compiled core takes it."""
+        return self.counter, list(self.literals), list(self.columns), list(self.widths)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layout:
+    """A file without its numbers."""
+
+    format: str
+    """``amc`` or ``bvh``."""
+    header: bytes
+    """Up to the first row, verbatim."""
+    tail: bytes
+    """Behind the last row, verbatim."""
+    formats: tuple[NumberFormat, ...]
+    """One per column."""
+    templates: tuple[RowTemplate, ...]
+    assigned: NDArray[np.int32]
+    """(F,) the template of each row, -1 for rows kept verbatim."""
+    counters: NDArray[np.int64]
+    """(F,) frame numbers, (0,) where the format has none."""
+    cell_rows: NDArray[np.uint64]
+    cell_slots: NDArray[np.uint32]
+    cells: tuple[bytes, ...]
+    """Numbers written otherwise than their column: row, slot, text; sorted."""
+    raw_rows: tuple[bytes, ...]
+    """Rows kept verbatim, in order."""
+
+    def verbatim_bytes(self) -> int:
+        """Give how many bytes of the body are kept as they are."""
+        return sum(map(len, self.cells)) + sum(map(len, self.raw_rows))
+
+    def join(self, values: NDArray[np.float64], most_bytes: int = 2**62) -> bytes:
+        """Give the file's bytes from all rows of values, (F, C).
+
+        Raises
+        ------
+        CorruptError
+            When more than ``most_bytes`` would come out.
+
+        """
+        if values.shape != (len(self.assigned), len(self.formats)):
+            raise CorruptError(
+                "values do not fit the layout",
+                expected=f"{len(self.assigned)} x {len(self.formats)}",
+                found=f"{values.shape[0]} x {values.shape[1]}",
+            )
+        body: bytes = _core.print_rows(
+            np.ascontiguousarray(values),
+            self.counters,
+            self.assigned,
+            [template.as_tuple() for template in self.templates],
+            packed(self.formats),
+            self.cell_rows,
+            self.cell_slots,
+            list(self.cells),
+            list(self.raw_rows),
+            most_bytes,
+        )
+        if len(self.header) + len(body) + len(self.tail) > most_bytes:
+            raise CorruptError("the layout makes a longer file than announced")
+        return self.header + body + self.tail
+
+    def first_row(self) -> bytes:
+        """Give the header and a first row whose numbers are zeros: enough to read the columns."""
+        template = self.templates[0]
+        one = Layout(
+            self.format,
+            self.header,
+            b"",
+            self.formats,
+            (template,),
+            np.zeros(1, np.int32),
+            np.ones(1 if template.counter else 0, np.int64),
+            np.empty(0, np.uint64),
+            np.empty(0, np.uint32),
+            (),
+            (),
+        )
+        return one.join(np.zeros((1, len(self.formats))))
+
+    def to_bytes(self) -> bytes:
+        """Give the layout as bytes (docs/format.md, section "Layout")."""
+        writer = Writer()
+        writer.bytes(self.header)
+        writer.bytes(self.tail)
+        _write_formats(writer, self.formats)
+        writer.integer(len(self.templates))
+        for template in self.templates:
+            _write_template(writer, template)
+        _write_runs(writer, (self.assigned + 1).tolist())
+        steps = np.diff(self.counters, prepend=0).tolist()
+        _write_runs(writer, [step << 1 if step >= 0 else (-step << 1) - 1 for step in steps])
+        writer.integer(len(self.cells))
+        last = 0
+        for row, slot, text in zip(
+            self.cell_rows.tolist(), self.cell_slots.tolist(), self.cells, strict=True
+        ):
+            writer.integer(row - last)
+            writer.integer(slot)
+            writer.bytes(text)
+            last = row
+        for row_bytes in self.raw_rows:
+            writer.bytes(row_bytes)
+        return bytes(writer.data)
+
+    @classmethod
+    def from_bytes(cls, data: bytes, kind: str, frames: int) -> "Layout":
+        """Read a layout of so many frames.
+
+        Raises
+        ------
+        CorruptError
+            When the bytes are not a layout.
+
+        """
+        reader = Reader(data, "layout")
+        header, tail = reader.bytes(), reader.bytes()
+        formats = _read_formats(reader)
+        templates = tuple(
+            _read_template(reader, len(formats)) for _ in range(reader.integer(_MOST_TEMPLATES))
+        )
+        assigned = _read_runs(reader, frames, len(templates)) - 1
+        zigzag = _read_runs(reader, frames, 2**62, may_be_empty=True)
+        counters = np.cumsum(np.where(zigzag & 1, -((zigzag + 1) >> 1), zigzag >> 1))
+        if len(counters) != frames and any(template.counter for template in templates):
+            raise reader.fail("rows without frame numbers")
+        rows, slots, texts = [], [], []
+        row = 0
+        for _ in range(reader.count(3)):
+            row += reader.integer(frames)
+            rows.append(row)
+            slots.append(reader.integer(2**32 - 1))
+            texts.append(reader.bytes())
+        if row and row >= frames:
+            raise reader.fail("a number outside the rows")
+        raw = tuple(reader.bytes() for _ in range(int((assigned < 0).sum())))
+        reader.end()
+        if not templates and len(formats):
+            raise reader.fail("no row template")
+        return cls(
+            kind,
+            header,
+            tail,
+            formats,
+            templates,
+            assigned.astype(np.int32),
+            counters.astype(np.int64),
+            np.array(rows, np.uint64),
+            np.array(slots, np.uint32),
+            tuple(texts),
+            raw,
+        )
+
+
+def build(
+    kind: str, data: bytes, body: Body, slots_of_row: Callable[[bytes], list[Slot]]
+) -> Layout:
+    """Find the layout of a file whose rows are read.
+
+    ``slots_of_row`` gives where the numbers of a row's bytes stand, in order.
+    """
+    offsets = body.offsets.astype(np.int64)
+    slots: dict[int, tuple[bytes, list[Slot]]] = {}
+
+    def row(index: int) -> tuple[bytes, list[Slot]]:
+        if index not in slots:
+            text = data[offsets[index] : offsets[index + 1]]
+            slots[index] = text, slots_of_row(text)
+        return slots[index]
+
+    frames = len(body.values)
+    sample = np.unique(np.linspace(0, frames - 1, min(frames, _SAMPLE)).astype(np.int64))
+    texts: list[list[bytes | None]] = []
+    for index in sample.tolist():
+        texts.append([None] * body.values.shape[1])
+        text, numbers = row(index)
+        for column, start, end in numbers:
+            if column >= 0:
+                texts[-1][column] = text[start:end]
+    formats = detect(body.statistics, body.values[sample], texts)
+
+    templates: list[RowTemplate] = []
+    assigned = np.full(frames, -1, np.int32)
+    cells: list[tuple[int, int, bytes]] = []
+    pending = np.arange(frames)
+    while len(pending) and len(templates) < _MOST_TEMPLATES:
+        first, second = row(int(pending[0])), row(int(pending[min(1, len(pending) - 1)]))
+        for template in (_padded_template(first, second), _template(*first)):
+            if template is None:
+                continue
+            matched, rows, at, found = _core.match_rows(
+                data,
+                body.offsets,
+                body.counters,
+                body.values,
+                pending,
+                template.as_tuple(),
+                packed(formats),
+            )
+            if matched.any():
+                break
+        if template is None or not matched.any():
+            break
+        assigned[pending[matched == 1]] = len(templates)
+        templates.append(template)
+        cells += zip(rows.tolist(), at.tolist(), found, strict=True)
+        pending = pending[matched == 0]
+    cells.sort(key=lambda cell: cell[:2])
+    return Layout(
+        kind,
+        data[: offsets[0]],
+        data[offsets[-1] :],
+        formats,
+        tuple(templates),
+        assigned,
+        body.counters,
+        np.array([cell[0] for cell in cells], np.uint64),
+        np.array([cell[1] for cell in cells], np.uint32),
+        tuple(cell[2] for cell in cells),
+        tuple(row(index)[0] for index in np.flatnonzero(assigned < 0).tolist()),
+    )
+
+
+def _template(text: bytes, slots: list[Slot]) -> RowTemplate:
+    ends = [0, *(end for _, _, end in slots)]
+    starts = [*(start for _, start, _ in slots), len(text)]
+    columns = tuple(column for column, _, _ in slots if column >= 0)
+    return RowTemplate(
+        len(columns) < len(slots),
+        tuple(text[end:start] for end, start in zip(ends, starts, strict=True)),
+        columns,
+        (0,) * len(columns),
+    )
+
+
+def _padded_template(
+    first: tuple[bytes, list[Slot]], second: tuple[bytes, list[Slot]]
+) -> RowTemplate | None:
+    """Read two rows as numbers padded to fixed widths, where they can be read so."""
+    template, other = _template(*first), _template(*second)
+    if template.literals == other.literals or len(template.literals) != len(other.literals):
+        return None
+    skip = 1 if template.counter else 0
+    literals, widths = list(template.literals), []
+    for k in range(len(template.columns)):
+        padding, width = _width(template.literals[k + skip], first[1][k + skip])
+        _, other_width = _width(other.literals[k + skip], second[1][k + skip])
+        if width != other_width or not 0 < width < 256:
+            return None
+        # The width may take in the one separating blank; what is left of it stays a literal.
+        literals[k + skip] = template.literals[k + skip][: len(padding)]
+        widths.append(width)
+    return RowTemplate(template.counter, tuple(literals), template.columns, tuple(widths))
+
+
+def _width(literal: bytes, slot: Slot) -> tuple[bytes, int]:
+    kept = literal.rstrip(b" ")
+    return kept, len(literal) - len(kept) + slot[2] - slot[1]
+
+
+def _write_formats(writer: Writer, formats: tuple[NumberFormat, ...]) -> None:
+    distinct = list(dict.fromkeys(formats))
+    writer.integer(len(formats))
+    writer.integer(len(distinct))
+    for f in distinct:
+        flags = f.point_zero | f.bare_point << 1 | f.upper << 2
+        writer.data += bytes((f.kind, f.digits, f.exponent_digits, flags))
+    _write_runs(writer, [distinct.index(f) for f in formats])
+
+
+def _read_formats(reader: Reader) -> tuple[NumberFormat, ...]:
+    columns = reader.integer(2**20)
+    distinct = []
+    for _ in range(reader.count(4)):
+        kind, digits, exponent_digits, flags = reader.raw(4)
+        if kind > 5 or digits > 40 or exponent_digits > 8 or (kind == 0 and not 1 <= digits <= 17):
+            raise reader.fail("no such number format")
+        distinct.append(
+            NumberFormat(
+                NumberKind(kind),
+                digits,
+                exponent_digits,
+                bool(flags & 1),
+                bool(flags & 2),
+                bool(flags & 4),
+            )
+        )
+    return tuple(distinct[i] for i in _read_runs(reader, columns, len(distinct) - 1).tolist())
+
+
+def _write_template(writer: Writer, template: RowTemplate) -> None:
+    writer.integer(template.counter | any(template.widths) << 1)
+    writer.integer(len(template.columns))
+    for literal in template.literals:
+        writer.bytes(literal)
+    expected = 0
+    for column in template.columns:
+        writer.signed(column - expected)
+        expected = column + 1
+    if any(template.widths):
+        writer.data += bytes(template.widths)
+
+
+def _read_template(reader: Reader, columns: int) -> RowTemplate:
+    flags = reader.integer(3)
+    counter = bool(flags & 1)
+    slots = reader.count(2)
+    literals = tuple(reader.bytes() for _ in range(slots + 1 + counter))
+    of_slots = []
+    expected = 0
+    for _ in range(slots):
+        column = expected + reader.signed()
+        if not 0 <= column < columns:
+            raise reader.fail("a number without a column")
+        of_slots.append(column)
+        expected = column + 1
+    widths = tuple(reader.raw(slots)) if flags & 2 else (0,) * slots
+    return RowTemplate(counter, literals, tuple(of_slots), widths)
+
+
+def _write_runs(writer: Writer, values: list[int]) -> None:
+    """Write equal neighbours as value and count."""
+    runs = [(value, len(list(group))) for value, group in groupby(values)]
+    writer.integer(len(runs))
+    for value, count in runs:
+        writer.integer(value)
+        writer.integer(count)
+
+
+def _read_runs(
+    reader: Reader, expected: int, most: int, *, may_be_empty: bool = False
+) -> NDArray[np.int64]:
+    values, counts = [], []
+    left = expected
+    for _ in range(reader.count(2)):
+        values.append(reader.integer(max(most, 0)))
+        counts.append(reader.integer(left))
+        left -= counts[-1]
+    if left and not (may_be_empty and not values):
+        raise reader.fail(f"{left} of {expected} entries missing")
+    return np.repeat(np.array(values, np.int64), np.array(counts, np.int64))

@@ -1,0 +1,119 @@
+"""Finding the number format of every column from how its numbers are written."""
+
+from collections import Counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress import _core
+from mocapress.formats.rows import merged_statistics
+from mocapress.model.number_format import NumberFormat, NumberKind
+
+
+def packed(formats: tuple[NumberFormat, ...]) -> NDArray[np.uint8]:
+    """Give formats as the compiled core takes them: (C, 6) uint8."""
+    rows = [
+        (f.kind, f.digits, f.exponent_digits, f.point_zero, f.bare_point, f.upper) for f in formats
+    ]
+    return np.array(rows, dtype=np.uint8).reshape(len(formats), 6)
+
+
+def detect(
+    statistics: NDArray[np.uint8], sample: NDArray[np.float64], texts: list[list[bytes | None]]
+) -> tuple[NumberFormat, ...]:
+    """Choose a format per column.
+
+    Parameters
+    ----------
+    statistics
+        (C, 8), see ``rows.Body``.
+    sample
+        (R, C), some rows.
+    texts
+        How these are written: R lists of C texts, None where the row has no such number.
+
+    The format that fits most columns is preferred, so that files come out with few formats.
+
+    """
+    columns = statistics.shape[0]
+    by_column = [[row[c] for row in texts] for c in range(columns)]
+
+    def misses(candidate: NumberFormat) -> list[int]:
+        return [_misses(printed(sample[:, c], candidate), by_column[c]) for c in range(columns)]
+
+    for candidate in _candidates(merged_statistics(statistics)):
+        if not any(misses(candidate)):
+            return (candidate,) * columns
+    candidates = list(
+        dict.fromkeys(
+            candidate
+            for row in [merged_statistics(statistics), *np.unique(statistics, axis=0)[:64]]
+            for candidate in _candidates(row)
+        )
+    )
+    counts = np.array([misses(candidate) for candidate in candidates])
+    votes = Counter[int]()
+    for c in range(columns):
+        votes.update(np.flatnonzero(counts[:, c] == counts[:, c].min()).tolist())
+    order = sorted(range(len(candidates)), key=lambda i: (-votes[i], i))
+    return tuple(candidates[min(order, key=lambda i: counts[i, c])] for c in range(columns))
+
+
+def _misses(ours: list[bytes], theirs: list[bytes | None]) -> int:
+    return sum(b is not None and a != b for a, b in zip(ours, theirs, strict=True))
+
+
+def printed(values: NDArray[np.float64], number_format: NumberFormat) -> list[bytes]:
+    """Print values, (N,), in a format."""
+    column = np.ascontiguousarray(values).reshape(-1, 1)
+    text: bytes = _core.print_rows(
+        column,
+        np.empty(0, np.int64),
+        np.zeros(len(values), np.int32),
+        [(False, [b"", b"\n"], [0], [0])],
+        packed((number_format,)),
+        np.empty(0, np.uint64),
+        np.empty(0, np.uint32),
+        [],
+        [],
+        2**62,
+    )
+    return text.split(b"\n")[:-1]
+
+
+def snap(values: NDArray[np.float64], number_format: NumberFormat) -> NDArray[np.float64]:
+    """Round values, (N,), to what reading their printed text gives."""
+    snapped: NDArray[np.float64] = _core.snap(
+        np.ascontiguousarray(values), packed((number_format,))[0].tolist()
+    )
+    return snapped
+
+
+def _candidates(row: NDArray[np.uint8]) -> list[NumberFormat]:
+    least, most, significant, exponent_digits, trailing, whole, bare, upper = (int(x) for x in row)
+    most = min(most, 40)
+    style = {
+        "exponent_digits": min(max(exponent_digits, 2), 8) if exponent_digits else 2,
+        "bare_point": bool(bare),
+        "upper": bool(upper),
+    }
+    kinds: list[tuple[NumberKind, int, bool]] = []
+    if least >= most:
+        kinds.append((NumberKind.FIXED, most, False))
+    point_zero = bool(trailing) and not whole
+    if not trailing or point_zero:
+        kinds += [
+            (NumberKind.GENERAL, digits, point_zero)
+            for digits in sorted({max(significant, 1), 6})
+            if significant <= digits <= 17
+        ]
+        kinds += [
+            (NumberKind.TRIMMED, most, point_zero),
+            (NumberKind.SHORTEST, 0, point_zero),
+            (NumberKind.SHORTEST32, 0, point_zero),
+        ]
+    if least < most:
+        kinds.append((NumberKind.FIXED, most, False))
+    if exponent_digits and 0 < significant <= 41:
+        kinds.append((NumberKind.SCIENTIFIC, significant - 1, False))
+    return [NumberFormat(kind, digits, point_zero=pz, **style) for kind, digits, pz in kinds]  # type: ignore[arg-type]
