@@ -13,6 +13,8 @@ namespace nb = nanobind;
 
 using Matrix = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Output = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Integers = nb::ndarray<const std::int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using IntegerOutput = nb::ndarray<std::int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Table = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 // (C, 4): parent, precision, grid, digits
 using Plan = nb::ndarray<const std::int32_t, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
@@ -35,6 +37,12 @@ app::Parameters parameters_of(const Table& alphas, std::size_t cluster, int mant
   return {{alphas.data(), size}, cluster, mantissa_limit};
 }
 
+nb::bytes to_python(const Bytes& bytes) { return nb::bytes(bytes.data(), bytes.size()); }
+
+ByteView view(const nb::bytes& bytes) {
+  return {static_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+}
+
 nb::bytes encode(const Matrix& values, const Plan& plan, const Table& alphas, std::size_t cluster,
                  int mantissa_limit) {
   const auto columns = columns_of(plan, values.shape(1));
@@ -44,14 +52,14 @@ nb::bytes encode(const Matrix& values, const Plan& plan, const Table& alphas, st
     nb::gil_scoped_release unlocked;
     payload = app::encode(values.data(), values.shape(0), columns, parameters);
   }
-  return nb::bytes(payload.data(), payload.size());
+  return to_python(payload);
 }
 
 void decode(const nb::bytes& payload, const Output& values, const Plan& plan, const Table& alphas,
             std::size_t cluster, int mantissa_limit) {
   const auto columns = columns_of(plan, values.shape(1));
   const auto parameters = parameters_of(alphas, cluster, mantissa_limit);
-  const ByteView bytes(static_cast<const std::uint8_t*>(payload.data()), payload.size());
+  const ByteView bytes = view(payload);
   nb::gil_scoped_release unlocked;
   app::decode(bytes, values.data(), values.shape(0), columns, parameters);
 }
@@ -81,6 +89,39 @@ double prediction_error(const Matrix& values, const Plan& plan, const Table& alp
   return app::prediction_error(values.data(), values.shape(0), columns, parameters);
 }
 
+void snap_columns(const Output& values, const Plan& plan) {
+  const auto columns = columns_of(plan, values.shape(1));
+  nb::gil_scoped_release unlocked;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto& column = columns[i % columns.size()];
+    values.data()[i] = snap(values.data()[i], column.grid, column.digits);
+  }
+}
+
+nb::bytes encode_differences(const Integers& differences) {
+  Bytes coded;
+  {
+    nb::gil_scoped_release unlocked;
+    Encoder encoder;
+    Difference<7> difference;
+    for (std::size_t i = 0; i < differences.size(); ++i) {
+      difference.encode(encoder, differences.data()[i]);
+    }
+    encoder.finish(coded);
+  }
+  return to_python(coded);
+}
+
+void decode_differences(const nb::bytes& coded, const IntegerOutput& differences) {
+  Decoder decoder(view(coded));
+  nb::gil_scoped_release unlocked;
+  Difference<7> difference;
+  for (std::size_t i = 0; i < differences.size() && decoder.sound(); ++i) {
+    differences.data()[i] = difference.decode(decoder);
+  }
+  if (!decoder.exhausted()) throw std::invalid_argument("the differences are cut off or too long");
+}
+
 }  // namespace
 
 void bind_app(nanobind::module_& module) {
@@ -93,6 +134,9 @@ void bind_app(nanobind::module_& module) {
              nb::arg("cluster"));
   module.def("app_prediction_error", &prediction_error, nb::arg("values"), nb::arg("plan"),
              nb::arg("alphas"), nb::arg("cluster"));
+  module.def("snap", &snap_columns, nb::arg("values"), nb::arg("plan"));
+  module.def("encode_differences", &encode_differences, nb::arg("differences"));
+  module.def("decode_differences", &decode_differences, nb::arg("coded"), nb::arg("differences"));
 }
 
 }  // namespace mocapress

@@ -241,20 +241,22 @@ template <int kLengthBits>
 class Difference {
  public:
   void encode(Encoder& encoder, std::int64_t value) {
-    const auto magnitude = static_cast<std::uint64_t>(value < 0 ? -value : value);
+    const bool negative = value < 0;
+    const auto bits = static_cast<std::uint64_t>(value);
+    const std::uint64_t magnitude = negative ? 0 - bits : bits;
     const int length = static_cast<int>(std::bit_width(magnitude));
     lengths_.encode(encoder, static_cast<unsigned>(length));
     if (length == 0) return;
     const std::uint64_t below = magnitude - (std::uint64_t{1} << (length - 1));
-    encoder.raw(below << 1 | (value < 0 ? 1 : 0), length);
+    encoder.raw(below << 1 | (negative ? 1 : 0), length);
   }
 
   std::int64_t decode(Decoder& decoder) {
-    const int length = static_cast<int>(lengths_.decode(decoder));
+    const int length = static_cast<int>(std::min(lengths_.decode(decoder), 64u));
     if (length == 0) return 0;
     const std::uint64_t coded = decoder.raw(length);
-    const auto magnitude = static_cast<std::int64_t>(coded >> 1 | std::uint64_t{1} << (length - 1));
-    return (coded & 1) != 0 ? -magnitude : magnitude;
+    const std::uint64_t magnitude = coded >> 1 | std::uint64_t{1} << (length - 1);
+    return static_cast<std::int64_t>((coded & 1) != 0 ? 0 - magnitude : magnitude);
   }
 
  private:

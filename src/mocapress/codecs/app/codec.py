@@ -35,7 +35,7 @@ class App:
     mantissa_limit: int = 12
     """Mantissa differences of fewer bits are coded in context, others leave the mantissa raw: 12 in
     the paper; from 24 on (53 for float64) every difference is coded in context."""
-    chunk: int = 960
+    chunk: int = 480
     """Frames that are decoded together, rounded up to whole clusters."""
 
     def __post_init__(self) -> None:
