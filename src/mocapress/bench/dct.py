@@ -145,7 +145,7 @@ def _forward(values: NDArray[np.float64]) -> NDArray[np.float32]:
     """Give coefficients (16, blocks, C); the last block is filled up with its last frame."""
     padding = (0, -len(values) % _BLOCK)
     filled = np.pad(values, (padding, (0, 0)), mode="edge" if len(values) else "constant")
-    frames = filled.reshape(-1, _BLOCK, values.shape[1]).transpose(1, 0, 2)
+    frames = filled.reshape(len(filled) // _BLOCK, _BLOCK, values.shape[1]).transpose(1, 0, 2)
     with np.errstate(all="ignore"):
         coefficients = _sum_in_order(_basis(), frames).astype(np.float32)
     coefficients[~np.isfinite(coefficients)] = 0
@@ -159,7 +159,9 @@ def _inverse(
     with np.errstate(all="ignore"):
         blocks = _sum_in_order(_basis().T, coefficients.astype(np.float64))
     channels = coefficients.shape[2]
-    values = np.ascontiguousarray(blocks.transpose(1, 0, 2).reshape(-1, channels)[:frames])
+    values = np.ascontiguousarray(
+        blocks.transpose(1, 0, 2).reshape(blocks.shape[1] * _BLOCK, channels)[:frames]
+    )
     values[~np.isfinite(values)] = 0
     _core.snap(values, plan)
     return values
