@@ -212,10 +212,37 @@ std::size_t clusters_of(std::size_t frames, std::size_t cluster) {
   return (frames + cluster - 1) / cluster;  // Eq. 2
 }
 
-// A matrix with columns lying in one piece.
+// Every column after its parent, else as they are. Throws std::invalid_argument on a cycle or a
+// parent that is no column.
+std::vector<std::size_t> coding_order(std::span<const Column> columns) {
+  std::vector<std::size_t> order;
+  std::vector<bool> placed(columns.size());
+  std::vector<std::size_t> line;  // a column and its ancestors that have no place yet
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    for (std::int64_t next = static_cast<std::int64_t>(c); next >= 0;) {
+      if (static_cast<std::size_t>(next) >= columns.size() || line.size() > columns.size()) {
+        throw std::invalid_argument("the parents of the columns are no tree");
+      }
+      if (placed[next]) break;
+      line.push_back(static_cast<std::size_t>(next));
+      next = columns[next].parent;
+    }
+    for (; !line.empty(); line.pop_back()) {
+      placed[line.back()] = true;
+      order.push_back(line.back());
+    }
+  }
+  return order;
+}
+
+// A matrix with columns lying in one piece, and the order in which they are coded. Throws
+// std::invalid_argument when the parents of the columns are no tree.
 class Columns {
  public:
-  Columns(std::size_t frames, std::size_t count) : frames_(frames), values_(frames * count) {}
+  Columns(std::size_t frames, std::span<const Column> columns)
+      : frames_(frames), order_(coding_order(columns)), values_(frames * columns.size()) {}
+
+  const std::vector<std::size_t>& order() const { return order_; }
 
   double* operator[](std::size_t column) { return values_.data() + column * frames_; }
   const double* parent_of(const Column& column) const {
@@ -224,12 +251,13 @@ class Columns {
 
  private:
   std::size_t frames_;
+  std::vector<std::size_t> order_;
   std::vector<double> values_;
 };
 
 // The values as stored: of single-precision columns, what the float32 holds.
 Columns stored(const double* values, std::size_t frames, std::span<const Column> columns) {
-  Columns matrix(frames, columns.size());
+  Columns matrix(frames, columns);
   for (std::size_t c = 0; c < columns.size(); ++c) {
     double* column = matrix[c];
     with_type(columns[c].precision, [&](auto zero) {
@@ -280,7 +308,7 @@ void for_each_column(Columns& matrix, std::size_t frames, std::span<const Column
                      const Parameters& parameters, const Bytes& choices, Visit visit) {
   const std::size_t clusters = clusters_of(frames, parameters.cluster);
   std::vector<double> steps(frames);
-  for (const std::size_t c : coding_order(columns)) {
+  for (const std::size_t c : matrix.order()) {
     fill_steps(steps, matrix.parent_of(columns[c]), choices.data() + c * clusters, parameters);
     with_type(columns[c].precision, [&](auto zero) {
       visit(matrix[c], [&, column = matrix[c]](std::size_t j) {
@@ -324,27 +352,6 @@ std::vector<Precision> precisions(const double* values, std::size_t frames,
   return found;
 }
 
-std::vector<std::size_t> coding_order(std::span<const Column> columns) {
-  std::vector<std::size_t> order;
-  std::vector<bool> placed(columns.size());
-  std::vector<std::size_t> line;  // a column and its ancestors that have no place yet
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    for (std::int64_t next = static_cast<std::int64_t>(c); next >= 0;) {
-      if (static_cast<std::size_t>(next) >= columns.size() || line.size() > columns.size()) {
-        throw std::invalid_argument("the parents of the columns are no tree");
-      }
-      if (placed[next]) break;
-      line.push_back(static_cast<std::size_t>(next));
-      next = columns[next].parent;
-    }
-    for (; !line.empty(); line.pop_back()) {
-      placed[line.back()] = true;
-      order.push_back(line.back());
-    }
-  }
-  return order;
-}
-
 std::size_t index_size(std::size_t frames, std::size_t columns, const Parameters& parameters) {
   return (clusters_of(frames, parameters.cluster) * columns * index_bits(parameters) + 7) / 8;
 }
@@ -376,7 +383,7 @@ void decode(ByteView payload, double* values, std::size_t frames, std::span<cons
              index_bits(parameters));
   Decoder decoder(payload.subspan(indices));
   Corrections corrections(parameters.mantissa_limit);
-  Columns matrix(frames, columns.size());
+  Columns matrix(frames, columns);
   for_each_column(matrix, frames, columns, parameters, choices, [&](double* column, auto predict) {
     auto& correction = corrections.of<decltype(predict(0))>();
     for (std::size_t j = 0; j < frames; ++j) column[j] = correction.decode(decoder, predict(j));

@@ -34,9 +34,7 @@ struct Parameters {
 std::vector<Precision> precisions(const double* values, std::size_t frames,
                                   std::span<const Column> columns);
 
-// Every column after its parent, else as they are. Throws std::invalid_argument on a cycle or a
-// parent that is no column.
-std::vector<std::size_t> coding_order(std::span<const Column> columns);
+// All below throw std::invalid_argument when the parents of the columns are no tree.
 
 // Codes `frames` x columns.size() values, row by row in `values`, as one chunk that needs no other.
 Bytes encode(const double* values, std::size_t frames, std::span<const Column> columns,

@@ -37,7 +37,8 @@ double snap_text(double value, int digits) {
 double snap_shortest32(double value) {
   std::array<char, 64> text;
   const auto printed =
-      std::to_chars(text.data(), text.data() + text.size(), static_cast<float>(value));
+      std::to_chars(text.data(), text.data() + text.size(), static_cast<float>(value),
+                    std::chars_format::scientific);  // fixed may print more digits than needed
   double number = value;
   std::from_chars(text.data(), printed.ptr, number);
   return number;

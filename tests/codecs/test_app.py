@@ -228,13 +228,13 @@ class TestMeasures:
     def test_average_prediction_error_of_equation_13(self) -> None:
         values = np.zeros((4, 7))
         values[:, 0] = [5, 6, 8, 8]
-        error = average_prediction_error(make_clip(values), App().coding)
+        error = average_prediction_error(make_clip(values), App())
         assert error == pytest.approx((1 + 2 + 0) / (3 * 7))
 
     def test_of_nothing(self) -> None:
         empty = make_clip(np.zeros((0, 7)))
         assert ideal_alphas(empty).shape == (0, 7)
-        assert average_prediction_error(empty, App().coding) == 0
+        assert average_prediction_error(empty, App()) == 0
 
 
 class TestRefuses:

@@ -1,5 +1,7 @@
 """What the paper measures of the predictor: ideal alphas and the average prediction error."""
 
+from typing import Protocol
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -7,6 +9,15 @@ from mocapress import _core
 from mocapress.codecs.app.coding import Coding, make_plan
 from mocapress.codecs.app.parents import parent_columns
 from mocapress.model import Clip
+
+
+class Predictor(Protocol):
+    """``App``, or a baseline with another table."""
+
+    @property
+    def coding(self) -> Coding:
+        """Table, cluster and chunk."""
+        ...
 
 
 def ideal_alphas(clip: Clip, t: int = 15) -> NDArray[np.float64]:
@@ -32,12 +43,13 @@ def ideal_alphas(clip: Clip, t: int = 15) -> NDArray[np.float64]:
     return found
 
 
-def average_prediction_error(clip: Clip, coding: Coding) -> float:
+def average_prediction_error(clip: Clip, codec: Predictor) -> float:
     """Give APE, the mean of ``|m - P|`` (Eq. 13), in the units of the columns.
 
     Over all values that have a prediction: not over the first frame of a chunk. 0 where there are
     none.
     """
+    coding = codec.coding
     values = np.ascontiguousarray(clip.values)
     plan = make_plan(clip.columns, parent_columns(clip), [0] * clip.channels)
     plan[:, 1] = _core.app_precisions(values, plan)
