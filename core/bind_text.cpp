@@ -21,7 +21,6 @@ namespace mocapress {
 namespace {
 
 using Values = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Vector = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Formats = nb::ndarray<const uint8_t, nb::shape<-1, 6>, nb::c_contig, nb::device::cpu>;
 template <typename T>
 using Input = nb::ndarray<const T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
@@ -188,24 +187,12 @@ nb::bytes bound_print_rows(const Values& values, const Input<int64_t>& counters,
   return nb::bytes(out.data(), out.size());
 }
 
-auto bound_snap(const Vector& values, const std::vector<uint8_t>& format) {
-  if (format.size() != 6) throw nb::value_error("a number format has six parts");
-  const NumberFormat f = number_format(format.data());
-  std::vector<double> snapped(values.shape(0));
-  {
-    const nb::gil_scoped_release release;
-    for (size_t i = 0; i < snapped.size(); ++i) snapped[i] = snap(values.data()[i], f);
-  }
-  return give(std::move(snapped));
-}
-
 }  // namespace
 
 void bind_text(nb::module_& module) {
   module.def("parse_rows", &bound_parse_rows);
   module.def("match_rows", &bound_match_rows);
   module.def("print_rows", &bound_print_rows);
-  module.def("snap", &bound_snap);
 }
 
 }  // namespace mocapress

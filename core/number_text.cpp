@@ -269,15 +269,4 @@ char* print_number(char* out, double value, const NumberFormat& format) {
   return print_decimal(out, read_scientific(text, result.ptr), 16, format);
 }
 
-double snap(double value, const NumberFormat& format) {
-  if (!std::isfinite(value)) return value;
-  if (format.kind == NumberKind::shortest) return value;
-  if (format.kind == NumberKind::shortest32) return static_cast<double>(static_cast<float>(value));
-  char text[max_number_text];
-  NumberShape shape;
-  double read = value;
-  const char* const end = print_number(text, value, format);
-  return parse_number(text, end, read, shape) == end ? read : value;
-}
-
 }  // namespace mocapress

@@ -46,7 +46,4 @@ const char* parse_number(const char* text, const char* end, double& value, Numbe
 // Prints a value; gives the end of the text. `out` has room for max_number_text bytes.
 char* print_number(char* out, double value, const NumberFormat& format);
 
-// Rounds to what would be read back after printing; anything not finite stays as it is.
-double snap(double value, const NumberFormat& format);
-
 }  // namespace mocapress

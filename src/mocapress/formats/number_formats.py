@@ -81,14 +81,6 @@ def printed(values: NDArray[np.float64], number_format: NumberFormat) -> list[by
     return text.split(b"\n")[:-1]
 
 
-def snap(values: NDArray[np.float64], number_format: NumberFormat) -> NDArray[np.float64]:
-    """Round values, (N,), to what reading their printed text gives."""
-    snapped: NDArray[np.float64] = _core.snap(
-        np.ascontiguousarray(values), packed((number_format,))[0].tolist()
-    )
-    return snapped
-
-
 def _candidates(row: NDArray[np.uint8]) -> list[NumberFormat]:
     least, most, significant, exponent_digits, trailing, whole, bare, upper = (int(x) for x in row)
     most = min(most, 40)

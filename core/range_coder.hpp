@@ -1,0 +1,266 @@
+// An adaptive binary range coder, beside a stream of bits that no model can shorten.
+//
+// Coded and raw bits lie apart, so that raw bits cost no arithmetic:
+//   varint size of the coded part | coded part | raw part, filled from the lowest bit up
+// The decoder reads zeros past the end of either part, and says so when asked.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace mocapress {
+
+using Bytes = std::vector<std::uint8_t>;
+using ByteView = std::span<const std::uint8_t>;
+
+// The chance that a bit is 0, learned at two rates: the fast follows changes, the slow is precise.
+class Bit {
+ public:
+  // In 1/65536, from 15 to 65521.
+  std::uint32_t chance_of_zero() const { return (std::uint32_t{fast_} + slow_) >> 1; }
+
+  void learn(bool one) {
+    fast_ = moved<4>(fast_, one);
+    slow_ = moved<7>(slow_, one);
+  }
+
+ private:
+  template <int kRate>
+  static std::uint16_t moved(std::uint16_t chance, bool one) {
+    const int target = one ? 15 : 65520 + (1 << kRate);
+    return static_cast<std::uint16_t>(chance + ((target - chance) >> kRate));
+  }
+
+  std::uint16_t fast_ = 1 << 15;
+  std::uint16_t slow_ = 1 << 15;
+};
+
+class Encoder {
+ public:
+  void bit(Bit& model, bool one) {
+    const std::uint64_t bound = (range_ >> 16) * model.chance_of_zero();
+    model.learn(one);
+    if (one) {
+      low_ += bound;
+      if (low_ < bound) carry();
+      range_ -= bound;
+    } else {
+      range_ = bound;
+    }
+    if (range_ >> 32 == 0) {
+      append(4);
+      range_ <<= 32;
+    }
+  }
+
+  // `value` < 2^count, count <= 64.
+  void raw(std::uint64_t value, int count) {
+    if (count > 32) {
+      raw(value & 0xffffffff, 32);
+      value >>= 32;
+      count -= 32;
+    }
+    raw_held_ |= value << raw_count_;
+    raw_count_ += count;
+    if (raw_count_ >= 32) {
+      for (int i = 0; i < 4; ++i) put_raw_byte();
+    }
+  }
+
+  // Appends what was coded to `bytes`; the encoder is used up.
+  void finish(Bytes& bytes) {
+    flush();
+    while (raw_count_ > 0) put_raw_byte();
+    std::size_t size = coded_.size();
+    for (; size >= 0x80; size >>= 7) bytes.push_back(static_cast<std::uint8_t>(size | 0x80));
+    bytes.push_back(static_cast<std::uint8_t>(size));
+    bytes.insert(bytes.end(), coded_.begin(), coded_.end());
+    bytes.insert(bytes.end(), raw_.begin(), raw_.end());
+  }
+
+ private:
+  void carry() {
+    for (std::size_t i = coded_.size(); i-- > 0 && ++coded_[i] == 0;) {
+    }
+  }
+
+  void append(int count) {
+    for (int i = 0; i < count; ++i, low_ <<= 8) {
+      coded_.push_back(static_cast<std::uint8_t>(low_ >> 56));
+    }
+  }
+
+  // Writes as few bytes as name a number within [low, low + range).
+  void flush() {
+    for (int count = 0; count <= 8; ++count) {
+      const std::uint64_t below = count == 8 ? 0 : ~std::uint64_t{0} >> (8 * count);
+      const std::uint64_t number = (low_ + below) & ~below;
+      if (number - low_ >= range_) continue;
+      if (low_ + below < low_) carry();
+      low_ = number;
+      return append(count);
+    }
+  }
+
+  void put_raw_byte() {
+    raw_.push_back(static_cast<std::uint8_t>(raw_held_));
+    raw_held_ >>= 8;
+    raw_count_ -= 8;
+  }
+
+  std::uint64_t low_ = 0;
+  std::uint64_t range_ = ~std::uint64_t{0};
+  Bytes coded_;
+  std::uint64_t raw_held_ = 0;
+  int raw_count_ = 0;
+  Bytes raw_;
+};
+
+class Decoder {
+ public:
+  explicit Decoder(ByteView bytes) {
+    std::uint64_t size = 0;
+    std::size_t start = 0;
+    bool complete = false;
+    while (!complete && start < std::min<std::size_t>(bytes.size(), 9)) {
+      size |= std::uint64_t{bytes[start] & 0x7fu} << (7 * start);
+      complete = bytes[start++] < 0x80;
+    }
+    well_formed_ = complete && size <= bytes.size() - start;
+    if (well_formed_) {
+      coded_ = bytes.subspan(start, size);
+      raw_ = bytes.subspan(start + size);
+    }
+    code_ = next_code_word();
+    code_ = code_ << 32 | next_code_word();
+  }
+
+  bool bit(Bit& model) {
+    const std::uint64_t bound = (range_ >> 16) * model.chance_of_zero();
+    const bool one = code_ >= bound;
+    model.learn(one);
+    code_ -= one ? bound : 0;
+    range_ = one ? range_ - bound : bound;
+    if (range_ >> 32 == 0) {
+      code_ = code_ << 32 | next_code_word();
+      range_ <<= 32;
+    }
+    return one;
+  }
+
+  // count <= 64
+  std::uint64_t raw(int count) {
+    if (count > 32) {
+      const std::uint64_t low = raw(32);
+      return low | raw(count - 32) << 32;
+    }
+    if (raw_count_ < count) {
+      raw_held_ |= std::uint64_t{next_raw_word()} << raw_count_;
+      raw_count_ += 32;
+    }
+    const std::uint64_t value = raw_held_ & ((std::uint64_t{1} << count) - 1);
+    raw_held_ >>= count;
+    raw_count_ -= count;
+    return value;
+  }
+
+  // Whether the sizes are sound and nothing was read that is not there.
+  bool sound() const {
+    return well_formed_ && coded_read_ <= coded_.size() + 8 && raw_bits() <= 8 * raw_.size();
+  }
+
+  // Whether, besides, nothing is left over.
+  bool exhausted() const {
+    return sound() && coded_.size() <= coded_read_ && raw_.size() == (raw_bits() + 7) / 8 &&
+           raw_held_ == 0;
+  }
+
+ private:
+  std::uint32_t next_code_word() {
+    std::uint32_t word = 0;
+    for (std::size_t i = 0; i < 4; ++i) word = word << 8 | byte(coded_, coded_read_ + i);
+    coded_read_ += 4;
+    return word;
+  }
+
+  std::uint32_t next_raw_word() {
+    std::uint32_t word = 0;
+    for (std::size_t i = 4; i-- > 0;) word = word << 8 | byte(raw_, raw_read_ + i);
+    raw_read_ += 4;
+    return word;
+  }
+
+  static std::uint32_t byte(ByteView bytes, std::size_t at) {
+    return at < bytes.size() ? bytes[at] : 0;
+  }
+
+  std::size_t raw_bits() const { return 8 * raw_read_ - static_cast<std::size_t>(raw_count_); }
+
+  bool well_formed_ = false;
+  ByteView coded_;
+  ByteView raw_;
+  std::size_t coded_read_ = 0;
+  std::size_t raw_read_ = 0;
+  std::uint64_t code_ = 0;
+  std::uint64_t range_ = ~std::uint64_t{0};
+  std::uint64_t raw_held_ = 0;
+  int raw_count_ = 0;
+};
+
+// A symbol of kBits bits: every bit, from the highest, has a model for each prefix.
+template <int kBits>
+class BitTree {
+ public:
+  void encode(Encoder& encoder, unsigned symbol) {
+    unsigned prefix = 1;
+    for (int i = kBits; i-- > 0;) {
+      const unsigned one = symbol >> i & 1;
+      encoder.bit(models_[prefix], one != 0);
+      prefix = prefix << 1 | one;
+    }
+  }
+
+  unsigned decode(Decoder& decoder) {
+    unsigned prefix = 1;
+    for (int i = kBits; i-- > 0;) prefix = prefix << 1 | (decoder.bit(models_[prefix]) ? 1 : 0);
+    return prefix - (1u << kBits);
+  }
+
+ private:
+  std::array<Bit, std::size_t{1} << kBits> models_;
+};
+
+// A difference of magnitude < 2^(2^kLengthBits - 1): its bit length is modelled (Elias gamma); the
+// sign and the bits below the leading one are raw.
+template <int kLengthBits>
+class Difference {
+ public:
+  void encode(Encoder& encoder, std::int64_t value) {
+    const bool negative = value < 0;
+    const auto bits = static_cast<std::uint64_t>(value);
+    const std::uint64_t magnitude = negative ? 0 - bits : bits;
+    const int length = static_cast<int>(std::bit_width(magnitude));
+    lengths_.encode(encoder, static_cast<unsigned>(length));
+    if (length == 0) return;
+    const std::uint64_t below = magnitude - (std::uint64_t{1} << (length - 1));
+    encoder.raw(below << 1 | (negative ? 1 : 0), length);
+  }
+
+  std::int64_t decode(Decoder& decoder) {
+    const int length = static_cast<int>(std::min(lengths_.decode(decoder), 64u));
+    if (length == 0) return 0;
+    const std::uint64_t coded = decoder.raw(length);
+    const std::uint64_t magnitude = coded >> 1 | std::uint64_t{1} << (length - 1);
+    return static_cast<std::int64_t>((coded & 1) != 0 ? 0 - magnitude : magnitude);
+  }
+
+ private:
+  BitTree<kLengthBits> lengths_;
+};
+
+}  // namespace mocapress

@@ -1,0 +1,1 @@
+"""Measurements: the codecs beside each other and beside other tools."""

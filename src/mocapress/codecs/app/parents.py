@@ -1,0 +1,23 @@
+"""Which column predicts which: the columns p of Eq. 6."""
+
+from mocapress.model import Clip
+
+
+def parent_columns(clip: Clip) -> list[int]:
+    """Give for each column the one whose step predicts its step, -1 for none.
+
+    That is the column of the same kind (``rx``, ``tz``, ...) of the nearest ancestor joint that
+    has one: the parent where it can, and else the joint through which the parent moves. Columns
+    of the root have none, nor has any without a skeleton.
+    """
+    joints = clip.skeleton.joints if clip.skeleton else ()
+    place = {(column.joint, column.kind): index for index, column in enumerate(clip.columns)}
+    parents = []
+    for column in clip.columns:
+        joint = column.joint
+        parent = -1
+        while parent < 0 and 0 <= joint < len(joints):
+            joint = joints[joint].parent
+            parent = place.get((joint, column.kind), -1) if joint >= 0 else -1
+        parents.append(parent)
+    return parents
