@@ -274,20 +274,27 @@ def _open(mcz: Mcz, skeleton: Skeleton | None) -> tuple[Codec, Layout, Clip]:
         raise CorruptError(f"layout: {error}") from error
 
 
+def chunks_of(
+    mcz: Mcz, start: int = 0, stop: int | None = None, frame: int = 0
+) -> tuple[Chunk, ...]:
+    """Take the chunks [start, stop) out of a file; the first begins at ``frame``."""
+    chunks = []
+    for i, entry in list(enumerate(mcz.index))[start:stop]:
+        chunks.append(Chunk(frame, entry.frames, mcz.payload(i), entry.restart))
+        frame += entry.frames
+    return tuple(chunks)
+
+
 def _decode(mcz: Mcz, codec: Codec, clip: Clip, first: int, last: int) -> NDArray[np.float64]:
     """Decode frames [first, last) and the fewest chunks that they need."""
     start, stop, frame = mcz.chunk_range(first, last)
-    chunks = []
-    at = frame
-    for i in range(start, stop):
-        entry = mcz.index[i]
-        chunks.append(Chunk(at, entry.frames, mcz.payload(i), entry.restart))
-        at += entry.frames
+    chunks = chunks_of(mcz, start, stop, frame)
+    frames = sum(chunk.frames for chunk in chunks)
     values = codec.decode(mcz.codec_header, chunks, clip.columns)
-    if values.shape != (at - frame, mcz.columns):
+    if values.shape != (frames, mcz.columns):
         raise CorruptError(
             "decoded values",
-            expected=f"{at - frame} x {mcz.columns}",
+            expected=f"{frames} x {mcz.columns}",
             found=" x ".join(map(str, values.shape)),
         )
     return values[first - frame : last - frame]

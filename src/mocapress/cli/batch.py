@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import typer
 
@@ -52,7 +52,7 @@ def find(inputs: Sequence[Path], suffixes: tuple[str, ...]) -> list[Job]:
     return jobs
 
 
-def usage(message: str) -> None:
+def usage(message: str) -> NoReturn:
     """End with the exit code of wrong usage."""
     typer.echo(f"mocapress: {message}", err=True)
     raise typer.Exit(2)

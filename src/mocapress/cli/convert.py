@@ -1,13 +1,15 @@
 """``convert``."""
 
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from mocapress import api, convert
 from mocapress.cli.batch import STREAM, Job, Outcome, find, run, target, usage
-from mocapress.errors import UnsupportedError
+from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.formats.files import format_clip
+from mocapress.model import Clip
 
 
 def convert_files(
@@ -22,14 +24,8 @@ def convert_files(
     json: bool,
 ) -> None:
     """Convert files; ``.mcz`` files are taken, too."""
-    if to is None and output is not None and output.suffix.lower() in (".bvh", ".amc"):
-        to = output.suffix.lower()[1:]
-    if to is None:
-        usage("say what to convert to: --to, or an output that ends in .bvh or .amc")
-        return
+    to = to or _kind_of(output)
     files = find(inputs, (".amc",) if to == "bvh" else (".bvh",))
-    if any(job.source == STREAM for job in files):
-        usage("convert reads files, not stdin")
 
     def rename(source: Path) -> Path:
         stem = source.with_suffix("") if source.suffix.lower() == ".mcz" else source
@@ -37,12 +33,7 @@ def convert_files(
 
     def work(job: Job) -> dict[str, Any]:
         place = target(job, output, rename, many=len(files) > 1)
-        compressed = job.source.suffix.lower() == ".mcz"
-        clip = (api.load if compressed else api.read)(job.source, asf_path=asf)
-        if clip.skeleton is None:
-            raise UnsupportedError(
-                "no skeleton", file=str(job.source), expected="an ASF beside it, or --asf"
-            )
+        clip = _read(job.source, asf)
         warning = None
         if to == "bvh":
             if clip.frame_time is None and fps is None:
@@ -51,15 +42,35 @@ def convert_files(
         result = {"output": str(place), "frames": clip.frames, "warning": warning}
         if place == STREAM:
             made = clip if to == "bvh" else convert.to_amc_clip(clip)
-            print(format_clip(made, to).decode("latin-1"), end="")
+            sys.stdout.buffer.write(format_clip(made, to))
         else:
             place.parent.mkdir(parents=True, exist_ok=True)
             api.write(clip, place, force=force)
         return result
 
-    def show(outcomes: list[Outcome]) -> None:
-        for outcome in outcomes:
-            if outcome.result["output"] != str(STREAM):
-                print(f"{outcome.result['output']}: {outcome.result['frames']} frames")
+    run(files, work, threads=jobs, json=json, show=_show)
 
-    run(files, work, threads=jobs, json=json, show=show)
+
+def _kind_of(output: Path | None) -> str:
+    kind = output.suffix.lower()[1:] if output else ""
+    if kind not in ("bvh", "amc"):
+        usage("say what to convert to: --to, or an output that ends in .bvh or .amc")
+    return kind
+
+
+def _read(source: Path, asf: Path | None) -> Clip:
+    if source == STREAM:
+        raise ParameterError("convert reads files, not stdin")
+    compressed = source.suffix.lower() == ".mcz"
+    clip = (api.load if compressed else api.read)(source, asf_path=asf)
+    if clip.skeleton is None:
+        raise UnsupportedError(
+            "no skeleton", file=str(source), expected="an ASF beside it, or --asf"
+        )
+    return clip
+
+
+def _show(outcomes: list[Outcome]) -> None:
+    for outcome in outcomes:
+        if outcome.result["output"] != str(STREAM):
+            print(f"{outcome.result['output']}: {outcome.result['frames']} frames")

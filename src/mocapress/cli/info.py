@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from mocapress import api
-from mocapress.cli.batch import Job, Outcome, contents, find, run
+from mocapress import describe
+from mocapress.cli.batch import STREAM, Job, Outcome, contents, find, run
 from mocapress.container.mcz import MAGIC
+from mocapress.formats.files import find_asf
 
 
 def show_info(inputs: Sequence[Path], *, asf: Path | None, jobs: int, json: bool) -> None:
@@ -16,9 +17,9 @@ def show_info(inputs: Sequence[Path], *, asf: Path | None, jobs: int, json: bool
     def work(job: Job) -> dict[str, Any]:
         data = contents(job.source)
         if data[:4] == MAGIC:
-            return api.describe(data, asf_path=asf or api.asf_beside(job.source))
-        clip = api.read(job.source, asf_path=asf)
-        return {"bytes": len(data)} | api.describe_clip(clip)
+            beside = find_asf(job.source.with_suffix("")) if job.source != STREAM else None
+            return describe.describe_mcz(data, asf_path=asf or beside)
+        return describe.describe_file(job.source, asf_path=asf)
 
     def show(outcomes: list[Outcome]) -> None:
         from rich.console import Console

@@ -43,7 +43,7 @@ def detect(
 
     for candidate in _candidates(merged_statistics(statistics)):
         if not any(misses(candidate)):
-            return (candidate,) * columns
+            return tuple(candidate for _ in range(columns))
     candidates = list(
         dict.fromkeys(
             candidate

@@ -128,7 +128,8 @@ def euler(angles: Sequence[tuple[str, Array]]) -> Array:
 
 def conjugate(turn: Array) -> Array:
     """Give the inverse of unit quaternions."""
-    return turn * np.array([1.0, -1, -1, -1])
+    inverse: Array = turn * np.array([1.0, -1, -1, -1])
+    return inverse
 
 
 def _forward(clip: Clip) -> tuple[list[Array], list[Array]]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.codecs.app.coding import Coding
+from mocapress.codecs.app.measures import average_prediction_error
 from mocapress.codecs.app.tables import ALPHA_TABLES
 from mocapress.codecs.contract import Chunk, Encoded, Model
 from mocapress.errors import ParameterError
@@ -60,6 +61,16 @@ class App:
     def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:  # noqa: ARG002
         """Code a clip; ``(F, C)`` values, any float64 including NaN, infinities and -0."""
         return self.coding.encode(clip)
+
+    def measure(self, clip: Clip, encoded: Encoded, raw_bytes: int) -> dict[str, float]:
+        """Give MCR, TCR (Eqs. 11 and 12) and APE (Eq. 13) of a coded clip."""
+        size = sum(len(chunk.payload) for chunk in encoded.chunks)
+        indices = self.coding.index_bytes(encoded.chunks, clip.channels)
+        return {
+            "MCR": raw_bytes / max(size - indices, 1),
+            "TCR": raw_bytes / max(size, 1),
+            "APE": average_prediction_error(clip, self),
+        }
 
     def decode(
         self,

@@ -58,7 +58,7 @@ class Coding:
             rows = values[first : first + self.frames_per_chunk]
             payload = _core.app_encode(rows, plan, table, self.t, self.mantissa_limit)
             chunks.append(Chunk(first, len(rows), payload))
-        index_bytes = sum(self._index_bytes(chunk.frames, clip.channels) for chunk in chunks)
+        index_bytes = self.index_bytes(chunks, clip.channels)
         return Encoded(pack_header(parents, precisions), tuple(chunks), index_bytes)
 
     def decode(
@@ -86,6 +86,10 @@ class Coding:
                 raise CorruptError(f"APP chunk from frame {chunk.first}: {error}") from error
             row += chunk.frames
         return values
+
+    def index_bytes(self, chunks: Sequence[Chunk], channels: int) -> int:
+        """Give how many bytes of the payloads are indices of alphas (IdxSize, Eq. 10)."""
+        return sum(self._index_bytes(chunk.frames, channels) for chunk in chunks)
 
     def _index_bytes(self, frames: int, channels: int) -> int:
         bits = len(self.alphas).bit_length() - 1

@@ -1,0 +1,166 @@
+"""``mocapress bench lossless``: every clip with every lossless codec and tool, in one run."""
+
+import hashlib
+import subprocess
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from time import perf_counter
+from typing import Any, TypeVar
+
+import numpy as np
+
+from mocapress import api
+from mocapress.bench.contenders import Tool, codec_contenders, tool_contenders
+from mocapress.codecs import Codec
+from mocapress.container import Kind, pack, pack_file, parse, unpack
+from mocapress.errors import FormatError, ParameterError
+from mocapress.formats import asf
+from mocapress.formats.files import find_asf, sniff, split
+from mocapress.formats.layout import Layout
+
+Row = dict[str, Any]
+T = TypeVar("T")
+
+
+def clips_in(folder: Path) -> list[Path]:
+    """Find the motion files below a folder."""
+    return sorted(p for p in folder.rglob("*") if p.suffix.lower() in (".amc", ".bvh"))
+
+
+def measure(
+    paths: Iterable[Path],
+    root: Path,
+    *,
+    only: str = "",
+    repeat: int = 1,
+    progress: Callable[[str], None] = lambda _: None,
+) -> tuple[list[Row], list[str]]:
+    """Measure clips; give one row per clip and contender, and what could not be measured.
+
+    Times are the best of ``repeat``. ``encode_us_per_frame`` and ``decode_us_per_frame`` are the
+    codec's own work on the matrix (a tool's: its work on the file); ``compress_s`` and
+    ``decompress_s`` are the whole way from file bytes to file bytes.
+    """
+    codecs, (tools, missing) = codec_contenders(), tool_contenders()
+    notes = [f"not installed: {name}" for name in missing]
+    if only:
+        names = [name.strip() for name in only.split(",")]
+        unknown = [name for name in names if name not in codecs and name not in tools]
+        if unknown:
+            known = ", ".join([*codecs, *tools])
+            raise ParameterError("--only", expected=f"some of {known}", found=", ".join(unknown))
+        codecs = {name: made for name, made in codecs.items() if name in names}
+        tools = {name: tool for name, tool in tools.items() if name in names}
+    rows = []
+    for path in paths:
+        progress(str(path.relative_to(root)))
+        data = path.read_bytes()
+        clip_row: Row = {"clip": str(path.relative_to(root)), "raw_bytes": len(data)}
+        try:
+            clip_row |= _shape(data, path)
+            clip_rows = [
+                _codec_row(data, path, made, repeat) | {"codec": name}
+                for name, made in codecs.items()
+            ]
+        except FormatError as error:
+            notes.append(f"left out, cannot be read: {error}")
+            continue
+        for name, tool in tools.items():
+            row = _tool_row(data, tool, repeat, clip_row["frames"]) | {"codec": name}
+            clip_rows.append(row)
+        rows += [clip_row | row for row in clip_rows]
+    return rows, notes
+
+
+def peak_memory(path: Path, contender: str) -> dict[str, float]:
+    """Measure in a process of its own what compressing and restoring a file adds, MB."""
+    done = subprocess.run(  # noqa: S603
+        [sys.executable, "-m", "mocapress.bench.peak", str(path), contender],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    before, after = (float(word) for word in done.stdout.split())
+    return {"peak_mb": after - before}
+
+
+def _shape(data: bytes, path: Path) -> Row:
+    kind = sniff(data, path.name)
+    if kind not in ("amc", "bvh"):
+        raise FormatError("not a motion file", file=str(path))
+    clip = split(data, kind, file=str(path)).clip
+    return {"format": kind, "frames": clip.frames, "channels": clip.channels}
+
+
+def _codec_row(data: bytes, path: Path, codec: Codec, repeat: int) -> Row:
+    kind = sniff(data, path.name) or ""
+    beside = find_asf(path) if kind == "amc" else None
+    skeleton = asf.parse_asf(beside.read_bytes(), str(beside)) if beside else None
+    (clip, layout, _), split_s = _best(
+        lambda: split(data, kind, skeleton=skeleton, file=str(path)), repeat
+    )
+    encoded, encode_s = _best(lambda: codec.encode(clip), repeat)
+    blob, pack_s = _best(
+        lambda: pack_file(
+            kind=Kind[kind.upper()],
+            size=len(data),
+            digest=hashlib.sha256(data).digest(),
+            payloads=[(chunk.frames, chunk.restart, chunk.payload) for chunk in encoded.chunks],
+            columns=clip.channels,
+            codec=codec.id,
+            codec_header=encoded.header,
+            layout=pack(layout.to_bytes()),
+        ),
+        repeat,
+    )
+    (mcz, read), open_s = _best(lambda: _open(blob), repeat)
+    chunks = api.chunks_of(mcz)
+    values, decode_s = _best(lambda: codec.decode(mcz.codec_header, chunks, clip.columns), repeat)
+    restored, join_s = _best(lambda: read.join(values), repeat)
+    payload = sum(len(chunk.payload) for chunk in encoded.chunks)
+    frames = max(clip.frames, 1)
+    return {
+        "compressed_bytes": len(blob),
+        "payload_bytes": payload,
+        "index_bytes": encoded.index_bytes,
+        "model_bytes": 0,
+        "header_bytes": len(blob) - payload,
+        "encode_us_per_frame": 1e6 * encode_s / frames,
+        "decode_us_per_frame": 1e6 * decode_s / frames,
+        "compress_s": split_s + encode_s + pack_s,
+        "decompress_s": open_s + decode_s + join_s,
+        "exact": hashlib.sha256(restored).digest() == hashlib.sha256(data).digest(),
+    }
+
+
+def _open(blob: bytes) -> tuple[Any, Layout]:
+    mcz = parse(blob)
+    layout = Layout.from_bytes(unpack(mcz.layout, "layout"), mcz.kind.name.lower(), mcz.frames)
+    return mcz, layout
+
+
+def _tool_row(data: bytes, tool: Tool, repeat: int, frames: int) -> Row:
+    packed, compress_s = _best(lambda: tool.compress(data), repeat)
+    restored, decompress_s = _best(lambda: tool.decompress(packed), repeat)
+    return {
+        "compressed_bytes": len(packed),
+        "payload_bytes": len(packed),
+        "index_bytes": 0,
+        "model_bytes": 0,
+        "header_bytes": 0,
+        "encode_us_per_frame": 1e6 * compress_s / max(frames, 1),
+        "decode_us_per_frame": 1e6 * decompress_s / max(frames, 1),
+        "compress_s": compress_s,
+        "decompress_s": decompress_s,
+        "exact": restored == data,
+    }
+
+
+def _best(work: Callable[[], T], repeat: int) -> tuple[T, float]:
+    times = []
+    for _ in range(repeat):
+        start = perf_counter()
+        result = work()
+        times.append(perf_counter() - start)
+    return result, float(np.min(times))

@@ -1,0 +1,88 @@
+"""Rows of the benchmark as Markdown tables."""
+
+from collections import defaultdict
+from collections.abc import Iterable
+from pathlib import PurePath
+from typing import Any
+
+Row = dict[str, Any]
+
+
+def markdown(header: list[str], rows: Iterable[list[str]]) -> str:
+    """Lay out a table; the first column on the left, numbers on the right."""
+    lines = ["| " + " | ".join(header) + " |", "|---" + "|---:" * (len(header) - 1) + "|"]
+    return "\n".join([*lines, *("| " + " | ".join(row) + " |" for row in rows)]) + "\n"
+
+
+def totals(rows: list[Row], memory: dict[str, float] | None = None) -> str:
+    """Sum over all clips, one line per contender, strongest first."""
+    lines = []
+    for codec, own in sorted(_by(rows, "codec").items(), key=lambda item: -_ratio(item[1])):
+        samples = sum(row["frames"] * row["channels"] for row in own)
+        raw, small = _sum(own, "raw_bytes"), _sum(own, "compressed_bytes")
+        frames = _sum(own, "frames")
+        lines.append(
+            [
+                codec,
+                f"{raw:,.0f}",
+                f"{small:,.0f}",
+                f"{raw / small:.3f}",
+                f"{8 * small / samples:.2f}",
+                f"{_weighted(own, 'encode_us_per_frame') / frames:.2f}",
+                f"{_weighted(own, 'decode_us_per_frame') / frames:.2f}",
+                f"{raw / 1e6 / _sum(own, 'compress_s'):.1f}",
+                f"{raw / 1e6 / _sum(own, 'decompress_s'):.1f}",
+                f"{memory[codec]:.0f}" if memory and codec in memory else "",
+                f"{sum(row['exact'] for row in own)}/{len(own)}",
+            ]
+        )
+    header = ["codec", "raw bytes", "compressed", "ratio", "bits/sample", "encode µs/frame"]
+    header += ["decode µs/frame", "compress MB/s", "restore MB/s", "peak MB", "exact"]
+    return markdown(header, lines)
+
+
+def by_group(rows: list[Row]) -> str:
+    """Give ratios per folder of clips (the paper's Table 2), one column per contender."""
+    groups: dict[str, list[Row]] = defaultdict(list)
+    for row in rows:
+        groups[str(PurePath(row["clip"]).parent)].append(row)
+    codecs = list(_by(rows, "codec"))
+    lines = []
+    for group, own in [*groups.items(), ("all", rows)]:
+        by_codec = _by(own, "codec")
+        first = by_codec[codecs[0]]
+        lines.append(
+            [group, str(len(first)), f"{_sum(first, 'frames'):.0f}"]
+            + [f"{_ratio(by_codec[codec]):.3f}" for codec in codecs]
+        )
+    return markdown(["clips of", "clips", "frames", *codecs], lines)
+
+
+def by_clip(rows: list[Row]) -> str:
+    """Give ratios per clip, one column per contender."""
+    codecs = list(_by(rows, "codec"))
+    lines = [
+        [clip, f"{own[0]['frames']}", f"{own[0]['raw_bytes']:,}"]
+        + [f"{row['raw_bytes'] / row['compressed_bytes']:.3f}" for row in own]
+        for clip, own in _by(rows, "clip").items()
+    ]
+    return markdown(["clip", "frames", "raw bytes", *codecs], lines)
+
+
+def _by(rows: list[Row], key: str) -> dict[str, list[Row]]:
+    groups: dict[str, list[Row]] = defaultdict(list)
+    for row in rows:
+        groups[row[key]].append(row)
+    return groups
+
+
+def _sum(rows: list[Row], key: str) -> float:
+    return float(sum(row[key] for row in rows)) or 1e-9
+
+
+def _ratio(rows: list[Row]) -> float:
+    return _sum(rows, "raw_bytes") / _sum(rows, "compressed_bytes")
+
+
+def _weighted(rows: list[Row], key: str) -> float:
+    return float(sum(row[key] * row["frames"] for row in rows))

@@ -1,0 +1,94 @@
+"""``bench``."""
+
+import json as jsonlib
+import sys
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from mocapress import api
+from mocapress.bench import app_figures, lossless, tables
+from mocapress.cli.batch import usage
+from mocapress.errors import MocapressError, ParameterError
+from mocapress.files import write_whole
+
+
+def bench_lossless_files(
+    corpus: Path | None,
+    *,
+    json: Path | None,
+    markdown: Path | None,
+    plots: Path | None,
+    only: str,
+    repeat: int,
+    force: bool,
+) -> None:
+    """Measure, print the totals, and write what was asked for."""
+    folder = corpus or _samples()
+    paths = lossless.clips_in(folder) if folder.is_dir() else [folder]
+    root = folder if folder.is_dir() else folder.parent
+    if not paths:
+        usage(f"no AMC or BVH files in {folder}")
+    try:
+        rows, notes = lossless.measure(
+            paths, root, only=only, repeat=repeat, progress=_progress(len(paths))
+        )
+    except ParameterError as error:
+        usage(str(error))
+    for note in notes:
+        typer.echo(f"mocapress: {note}", err=True)
+    if not rows:
+        usage("none of the clips can be read")
+    largest = max(paths, key=lambda path: path.stat().st_size)
+    names = list(dict.fromkeys(row["codec"] for row in rows))
+    memory = {name: lossless.peak_memory(largest, name)["peak_mb"] for name in names}
+    parts = [tables.totals(rows, memory), tables.by_group(rows)]
+    if len(paths) <= 10:
+        parts.append(tables.by_clip(rows))
+    if plots:
+        numbers = _figures(paths, plots)
+        parts.append(app_figures.report(numbers))
+    for part in parts:
+        print(part)
+    if json:
+        write_whole(json, jsonlib.dumps(rows, indent=1).encode(), force=force)
+    if markdown:
+        write_whole(markdown, "\n".join(parts).encode(), force=force)
+    if not all(row["exact"] for row in rows):
+        typer.echo("mocapress: not everything was restored exactly", err=True)
+        raise typer.Exit(3)
+
+
+def _figures(paths: list[Path], folder: Path) -> dict[str, Any]:
+    clips = []
+    for path in paths:
+        try:
+            clips.append((api.read(path), path.stat().st_size))
+        except MocapressError:
+            continue  # said already
+    numbers = app_figures.measure(clips, _progress(0))
+    try:
+        app_figures.draw(numbers, folder)
+    except ImportError:
+        usage("--plots needs matplotlib: pip install 'mocapress[bench]'")
+    return numbers
+
+
+def _samples() -> Path:
+    checkout = Path(lossless.__file__).parents[3] / "samples"
+    if not checkout.is_dir():
+        usage("name a folder of clips")
+    return checkout
+
+
+def _progress(total: int) -> Any:
+    count = 0
+
+    def show(what: str) -> None:
+        nonlocal count
+        count += 1
+        if sys.stderr.isatty():
+            typer.echo(f"\r\033[K{f'{count}/{total} ' if total else ''}{what}", err=True, nl=False)
+
+    return show
