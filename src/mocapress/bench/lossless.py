@@ -130,7 +130,7 @@ def _codec_row(data: bytes, path: Path, codec: Codec, repeat: int) -> Row:
         "decode_us_per_frame": 1e6 * decode_s / frames,
         "compress_s": split_s + encode_s + pack_s,
         "decompress_s": open_s + decode_s + join_s,
-        "exact": hashlib.sha256(restored).digest() == hashlib.sha256(data).digest(),
+        **_proof(data, restored),
     }
 
 
@@ -153,8 +153,13 @@ def _tool_row(data: bytes, tool: Tool, repeat: int, frames: int) -> Row:
         "decode_us_per_frame": 1e6 * decompress_s / max(frames, 1),
         "compress_s": compress_s,
         "decompress_s": decompress_s,
-        "exact": restored == data,
+        **_proof(data, restored),
     }
+
+
+def _proof(data: bytes, restored: bytes) -> Row:
+    digest = hashlib.sha256(restored).hexdigest()
+    return {"exact": digest == hashlib.sha256(data).hexdigest(), "sha256": digest}
 
 
 def _best(work: Callable[[], T], repeat: int) -> tuple[T, float]:

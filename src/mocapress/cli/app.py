@@ -170,3 +170,11 @@ def bench_lossless(
     bench_lossless_files(
         corpus, json=json, markdown=markdown, plots=plots, only=only, repeat=repeat, force=force
     )
+
+
+@bench_app.command("demo")
+def bench_demo(debug: Debug = False) -> None:
+    """Compress and restore the samples of a checkout with every codec."""
+    from mocapress.cli.bench import demo_files
+
+    demo_files()

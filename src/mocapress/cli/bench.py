@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from mocapress import api
+from mocapress import api, codecs
 from mocapress.bench import app_figures, lossless, tables
 from mocapress.cli.batch import usage
 from mocapress.errors import MocapressError, ParameterError
@@ -57,6 +57,39 @@ def bench_lossless_files(
         write_whole(markdown, "\n".join(parts).encode(), force=force)
     if not all(row["exact"] for row in rows):
         typer.echo("mocapress: not everything was restored exactly", err=True)
+        raise typer.Exit(3)
+
+
+def demo_files() -> None:
+    """Compress and restore the samples with every codec, beside gzip, xz and zstd."""
+    from rich.console import Console
+    from rich.table import Table
+
+    folder = _samples()
+    names = [*codecs.codec_ids(), "gzip -9", "xz -9e", "zstd -22"]
+    rows, notes = lossless.measure(lossless.clips_in(folder), folder, only=",".join(names))
+    for note in notes:
+        typer.echo(f"mocapress: {note}", err=True)
+    table = Table(title="Compressed, restored and compared with the original by SHA-256")
+    for name in ("clip", "codec", "raw", "compressed", "ratio", "µs/frame", "back", "restored"):
+        table.add_column(name, justify="left" if name in ("clip", "codec") else "right")
+    last = None
+    for row in rows:
+        same = "[green]same[/]" if row["exact"] else "[bold red]DIFFERS[/]"
+        table.add_row(
+            row["clip"] if row["clip"] != last else "",
+            row["codec"],
+            f"{row['raw_bytes']:,}",
+            f"{row['compressed_bytes']:,}",
+            f"{row['raw_bytes'] / row['compressed_bytes']:.2f}",
+            f"{row['encode_us_per_frame']:.1f}",
+            f"{row['decode_us_per_frame']:.1f}",
+            f"{row['sha256'][:8]} {same}",
+        )
+        last = row["clip"]
+    console = Console()
+    console.print(table, width=None if console.is_terminal else 110)
+    if not all(row["exact"] for row in rows):
         raise typer.Exit(3)
 
 

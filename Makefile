@@ -1,0 +1,60 @@
+# make demo: build, compress and restore the samples.  make test: everything that CI checks.
+PYTHON ?= python3
+CXX ?= g++
+VENV := .venv
+BIN := $(VENV)/bin
+CORPUS_SOURCE := ../shared/data
+SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined -fno-sanitize-recover=all -Icore
+FUZZ_RUNS ?= 100000
+
+.PHONY: demo test check tests sanitize fuzz bench wheel clean
+
+demo: $(VENV)/.built
+	@$(BIN)/mocapress bench demo
+
+test: check sanitize tests
+
+check: $(VENV)/.built
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/clang-format --dry-run --Werror core/*.cpp core/*.hpp core/fuzz/*.cpp
+	$(BIN)/mypy
+
+tests: $(VENV)/.built corpus
+	MOCAPRESS_CORPUS=$(if $(wildcard corpus/.version),$(CURDIR)/corpus,$(MOCAPRESS_CORPUS)) \
+	    $(BIN)/pytest
+
+# The decoders under AddressSanitizer and UBSan, on seeds and deterministic mutations of them.
+fuzzers := $(patsubst core/fuzz/fuzz_%.cpp,build/fuzz/%,$(wildcard core/fuzz/fuzz_*.cpp))
+kernels := $(filter-out core/bind%,$(wildcard core/*.cpp))
+
+sanitize: $(fuzzers)
+	@for target in $(fuzzers); do echo $$target; \
+	    $$target $$(ls -d core/fuzz/seeds/$$(basename $$target)/* 2>/dev/null) -runs=$(FUZZ_RUNS) \
+	    || exit 1; done
+
+build/fuzz/%: core/fuzz/fuzz_%.cpp core/fuzz/driver.cpp $(kernels) $(wildcard core/*.hpp)
+	@mkdir -p build/fuzz
+	$(CXX) $(SANITIZE) $< core/fuzz/driver.cpp $(kernels) -o $@
+
+bench: $(VENV)/.built corpus
+	$(BIN)/mocapress bench lossless $(if $(wildcard corpus/.version),corpus/amc/cmu)
+
+wheel: $(VENV)/.built
+	$(BIN)/pip wheel --no-deps -w dist .
+
+# The developers' clips, where they are.
+.PHONY: corpus
+corpus:
+	@if [ -x $(CORPUS_SOURCE)/unpack ]; then $(PYTHON) $(CORPUS_SOURCE)/unpack corpus; fi
+
+$(VENV)/.built: pyproject.toml CMakeLists.txt $(wildcard core/*.cpp core/*.hpp)
+	@command -v $(PYTHON) >/dev/null || { echo "mocapress needs Python 3.11 to 3.13 (Debian: apt-get install python3-venv)"; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "mocapress needs Python 3.11 or later; PYTHON=... names one"; exit 1; }
+	@command -v $(CXX) >/dev/null || { echo "mocapress needs a C++20 compiler: g++ 12 or clang 15 (Debian: apt-get install g++)"; exit 1; }
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	CXX=$(CXX) $(BIN)/pip install --quiet --disable-pip-version-check --editable '.[bench,dev]'
+	@touch $@
+
+clean:
+	rm -rf $(VENV) build dist
