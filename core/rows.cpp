@@ -10,6 +10,8 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 // A position in the text that moves by items.
 struct Cursor {
   const char* p;
@@ -124,6 +126,11 @@ ParsedRows parse_rows(std::string_view data, uint64_t begin, const RowShape& sha
           break;
         }
       if (whole && !next.line_end()) end = RowEnd::line_end_expected, whole = false;
+    }
+    // A line more than the shape has belongs to this row, not to the next.
+    if (whole && shape.counter && next.p < next.end && !is_digit(*next.p)) {
+      end = RowEnd::counter_expected;
+      whole = false;
     }
     if (whole && next.p == start) whole = false;  // a shape without items
     if (!whole) {

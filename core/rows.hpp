@@ -34,7 +34,14 @@ struct ColumnStatistics {
   bool upper = false;
 };
 
-enum class RowEnd { end_of_data, word_differs, number_expected, line_end_expected, limit };
+enum class RowEnd {
+  end_of_data,
+  word_differs,
+  number_expected,
+  line_end_expected,
+  limit,
+  counter_expected
+};
 
 struct ParsedRows {
   std::vector<double> values;     // rows x columns

@@ -3,9 +3,13 @@
 import bz2
 import gzip
 import lzma
+import shutil
+import subprocess
+import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from mocapress import codecs
@@ -76,17 +80,24 @@ def _brotli() -> Tool:
 
 
 def _ppmd() -> Tool:
-    """PPMd as 7-Zip's strongest setting has it: order 32, 192 MB; the size goes in front."""
-    pyppmd: Any = import_module("pyppmd")
+    """PPMd as the command 7z has it at its strongest; only where that is installed."""
+    command = shutil.which("7z") or shutil.which("7za")
+    if command is None:
+        raise ImportError
 
     def compress(data: bytes) -> bytes:
-        encoder = pyppmd.Ppmd7Encoder(32, 192 << 20)
-        packed: bytes = encoder.encode(data) + encoder.flush()
-        return len(data).to_bytes(8, "little") + packed
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "clip").write_bytes(data)
+            _run([command, "a", "-m0=PPMd", "-mx=9", "clip.7z", "clip"], folder)
+            return (Path(folder) / "clip.7z").read_bytes()
 
     def decompress(data: bytes) -> bytes:
-        size = int.from_bytes(data[:8], "little")
-        restored: bytes = pyppmd.Ppmd7Decoder(32, 192 << 20).decode(data[8:], size)
-        return restored
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "clip.7z").write_bytes(data)
+            return _run([command, "e", "-so", "clip.7z"], folder)
 
     return Tool(compress, decompress)
+
+
+def _run(command: list[str], folder: str) -> bytes:
+    return subprocess.run(command, cwd=folder, capture_output=True, check=True).stdout  # noqa: S603

@@ -155,7 +155,9 @@ def _partial_rows(
 
 
 def _expected(body: Body, shape: RowShape) -> str:
-    if body.stop == "line end" or body.stop == "number":
+    if body.stop == "frame number":
+        return "the next frame's number, or the end of the file"
+    if body.stop in ("line end", "number"):
         bone = shape.words[body.error_item].decode("latin-1")
         return f"{shape.counts[body.error_item]} numbers for bone {bone}"
     return f"bone {shape.words[body.error_item].decode('latin-1')}"

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mocapress import _core
 from mocapress.errors import FormatError
 
-_ENDS = ("end of data", "word", "number", "line end", "limit")
+_ENDS = ("end of data", "word", "number", "line end", "limit", "frame number")
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,32 @@
+"""What tests share: the samples, and the corpus where it is."""
+
+import os
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+SAMPLES = Path(__file__).parents[1] / "samples"
+# Machines differ in speed: what counts is what holds, not how fast.
+settings.register_profile(
+    "mocapress", deadline=None, suppress_health_check=[HealthCheck.too_slow], max_examples=60
+)
+settings.load_profile("mocapress")
+
+
+@pytest.fixture(scope="session")
+def samples() -> Path:
+    return SAMPLES
+
+
+@pytest.fixture(scope="session")
+def corpus() -> Path:
+    folder = os.environ.get("MOCAPRESS_CORPUS")
+    if not folder:
+        pytest.skip("MOCAPRESS_CORPUS does not name a folder of clips")
+    return Path(folder)
+
+
+@pytest.fixture(scope="session")
+def corpus_clips(corpus: Path) -> list[Path]:
+    return sorted(p for p in corpus.rglob("*") if p.suffix.lower() in (".amc", ".bvh"))

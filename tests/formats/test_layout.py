@@ -1,0 +1,157 @@
+"""Bytes come back as they were: ``join`` undoes ``split``, apart from any codec."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mocapress.errors import CorruptError
+from mocapress.formats.files import columns_of, sniff, split
+from mocapress.formats.layout import Layout
+
+AMC = b":FULLY-SPECIFIED\n:DEGREES\n" + b"".join(
+    b"%d\nroot %d.5 2 3 4 5 6\nhip 1.25 -0.125\n" % (i, i) for i in range(1, 9)
+)
+BVH = (
+    b"HIERARCHY\nROOT hip\n{\n  OFFSET 0 0 0\n  CHANNELS 3 Xrotation Yrotation Zrotation\n"
+    b"  End Site\n  {\n    OFFSET 0 1 0\n  }\n}\nMOTION\nFrames: 4\nFrame Time: 0.01\n"
+    b"1.0 2.0 3.0\n1.5 2.5 3.5\n1.25 -2.5 0.0\n9.0 8.0 7.0\n"
+)
+
+
+def restored(data: bytes) -> tuple[bytes, Layout]:
+    """Take apart, store the layout, read it again and join."""
+    kind = sniff(data)
+    assert kind is not None
+    clip, layout, _ = split(data, kind)
+    stored = layout.to_bytes()
+    again = Layout.from_bytes(stored, kind, clip.frames)
+    assert again.to_bytes() == stored
+    assert [c.decimal for c in columns_of(again).columns] == [c.decimal for c in clip.columns]
+    return again.join(clip.values), layout
+
+
+@pytest.mark.parametrize("name", ["cmu_01_01.amc", "freebvh.bvh", "mocapbank.bvh"])
+def test_samples_come_back(samples: Path, name: str) -> None:
+    data = (samples / name).read_bytes()
+    back, layout = restored(data)
+    assert back == data
+    assert layout.verbatim_bytes() == 0
+
+
+VARIANTS: dict[str, Callable[[bytes], bytes]] = {
+    "as it is": lambda d: d,
+    "CRLF": lambda d: d.replace(b"\n", b"\r\n"),
+    "no final newline": lambda d: d[:-1],
+    "tabs": lambda d: d.replace(b" ", b"\t"),
+    "trailing blanks": lambda d: d.replace(b"\n", b" \n"),
+    "two blanks": lambda d: d.replace(b" ", b"  "),
+    "empty lines at the end": lambda d: d + b"\n\n",
+    "empty lines between": lambda d: d.replace(b"\n2\n", b"\n\n2\n").replace(b"\n1.5", b"\n\n1.5"),
+    "comment first": lambda d: b"# a comment\n" + d if d.startswith(b":") else d,
+    "comment between": lambda d: d.replace(b"\n3\n", b"\n# three\n3\n"),
+    "other last line end": lambda d: d[:-1] + b"\r\n",
+    "a number written otherwise": lambda d: d.replace(b"1.25", b"+01.250e0", 1),
+    "long number": lambda d: d.replace(b"1.25", b"1.2500000000000000000000000000001", 1),
+    "scientific": lambda d: d.replace(b"1.25", b"-1.6201e-014"),
+    "frame numbers jump": lambda d: d.replace(b"\n4\nroot", b"\n400\nroot"),
+    "bone left out": lambda d: d.replace(b"\nhip 1.25 -0.125\n3", b"\n3"),
+    "bones in another order": lambda d: re.sub(
+        rb"\n2\n(root[^\n]*)\n(hip[^\n]*)\n", rb"\n2\n\2\n\1\n", d
+    ),
+    "Latin-1 in the header": lambda d: d.replace(b":DEGREES", b"# f\xfcr\n:DEGREES"),
+    "minus zero": lambda d: d.replace(b"2.5", b"-0").replace(b" 4 ", b" -0 "),
+}
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("data", [AMC, BVH], ids=["amc", "bvh"])
+def test_every_way_of_writing_comes_back(data: bytes, variant: str) -> None:
+    data = VARIANTS[variant](data)
+    assert restored(data)[0] == data
+
+
+def test_numbers_padded_to_a_width_need_one_template_only() -> None:
+    rows = np.random.default_rng(1).normal(0, 200, (30, 3))
+    data = BVH[: BVH.index(b"1.0 2.0")].replace(b"Frames: 4", b"Frames: 30")
+    data += b"".join(b"%10.4f%10.4f%10.4f\n" % tuple(row) for row in rows)
+    back, layout = restored(data)
+    assert back == data
+    assert len(layout.templates) == 1
+    assert layout.verbatim_bytes() == 0
+
+
+def test_repeated_bone_names_keep_their_values_apart() -> None:
+    data = AMC.replace(b"hip 1.25 -0.125", b"hip 1 2\nhip 3 4")
+    clip, layout, _ = split(data, "amc")
+    assert [c.name for c in clip.columns[6:]] == ["hip.v1", "hip.v2", "hip#2.v1", "hip#2.v2"]
+    assert clip.values[0, 6:].tolist() == [1, 2, 3, 4]
+    assert layout.join(clip.values) == data
+
+
+def test_a_bone_left_out_keeps_its_values() -> None:
+    data = VARIANTS["bone left out"](AMC).replace(b"hip 1.25", b"hip 7.5", 1)
+    clip = split(data, "amc").clip
+    assert clip.values[:3, 6].tolist() == [7.5, 7.5, 1.25]
+
+
+numbers = st.floats(-1e7, 1e7).map(lambda v: f"{v:.6g}") | st.sampled_from(
+    ["0", "-0", "1e-014", ".5", "+3", "00", "1.0", "1E5", "12345678901234567890.5"]
+)
+
+
+@given(
+    st.lists(st.lists(numbers, min_size=3, max_size=3), min_size=1, max_size=12),
+    st.sampled_from([" ", "\t", "  "]),
+    st.sampled_from(["\n", "\r\n", " \n"]),
+    st.booleans(),
+)
+def test_any_numbers_come_back(rows: list[list[str]], gap: str, end: str, last: bool) -> None:
+    text = end.join(gap.join(row) for row in rows) + (end if last else "")
+    header = BVH[: BVH.index(b"1.0 2.0")].replace(b"Frames: 4", b"Frames: %d" % len(rows))
+    data = header + text.encode()
+    clip, layout, error = split(data, "bvh")
+    assert error is None
+    assert clip.values.tolist() == [[float(t) for t in row] for row in rows]
+    assert layout.join(clip.values) == data
+
+
+@given(st.binary(max_size=60), st.integers(0, 400), st.integers(0, 255))
+def test_broken_layouts_give_an_error(junk: bytes, at: int, byte: int) -> None:
+    _, layout, _ = split(AMC, "amc")
+    stored = bytearray(layout.to_bytes())
+    stored[at % len(stored)] = byte
+    for broken in (junk, bytes(stored), bytes(stored[: at % len(stored)])):
+        try:
+            read = Layout.from_bytes(broken, "amc", 8)
+            read.join(np.zeros((8, len(read.formats))), 10_000)
+        except CorruptError:
+            pass
+
+
+def test_a_row_that_cannot_be_read_is_an_error_with_its_line() -> None:
+    error = split(AMC.replace(b"-0.125\n3", b"\n3"), "amc").error
+    assert error is not None
+    assert (error.line, error.expected) == (8, "2 numbers for bone hip")
+    assert error.found == "the end of the line"
+
+
+def test_what_cannot_be_read_is_kept_in_the_tail() -> None:
+    data = AMC.replace(b"-0.125\n3", b"x\n3")
+    clip, layout, error = split(data, "amc")
+    assert error is not None
+    assert clip.frames == 1
+    assert layout.join(clip.values) == data
+
+
+@pytest.mark.corpus
+def test_the_whole_corpus_comes_back(corpus_clips: list[Path]) -> None:
+    for path in corpus_clips:
+        data = path.read_bytes()
+        clip, layout, error = split(data, sniff(data, path.name) or "", file=str(path))
+        assert error is None
+        assert layout.join(clip.values) == data

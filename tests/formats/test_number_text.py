@@ -1,0 +1,133 @@
+"""Numbers as text: read as ``float`` reads them, printed as C's ``printf`` prints them."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from mocapress.formats.number_formats import detect, printed
+from mocapress.formats.rows import RowShape, read_rows
+from mocapress.model.number_format import NumberFormat, NumberKind
+
+finite = st.floats(allow_nan=False, allow_infinity=False)
+motion = st.floats(-1e6, 1e6) | st.floats(-1e-3, 1e-3)
+
+
+def read_one(text: str) -> float | None:
+    body = read_rows(text.encode() + b"\n", 0, RowShape(False, (b"",), (1,)))
+    return float(body.values[0, 0]) if len(body.values) == 1 else None
+
+
+def print_one(value: float, number_format: NumberFormat) -> str:
+    return printed(np.array([value]), number_format)[0].decode()
+
+
+@given(finite, st.sampled_from(["{!r}", "{:.17g}", "{:.6f}", "{:.3e}", "{:+.9g}", "{:g}"]))
+@example(0.1, "{!r}")
+@example(-0.0, "{:.6f}")
+@example(5e-324, "{!r}")
+@example(1.7976931348623157e308, "{!r}")
+def test_reading_gives_the_nearest_double(value: float, style: str) -> None:
+    text = style.format(value)
+    if math.isinf(float(text)):
+        assert read_one(text) is None
+    else:
+        found = read_one(text)
+        assert found is not None
+        assert np.float64(found).tobytes() == np.float64(float(text)).tobytes()
+
+
+@pytest.mark.parametrize(
+    "text", ["", "nan", "inf", "-", ".", "1e", "1e+", "0x1p3", "1,5", "--1", "1.2.3", "1e999"]
+)
+def test_what_is_no_number_is_not_read(text: str) -> None:
+    assert read_one(text) is None
+
+
+@pytest.mark.parametrize(
+    "text", ["1.", ".5", "-.5e3", "+7", "007", "1E5", "1e-400", "123456789012345678901234567890"]
+)
+def test_what_float_reads_is_read(text: str) -> None:
+    assert read_one(text) == float(text)
+
+
+@given(motion, st.integers(1, 15))
+def test_general_is_printfs_g(value: float, digits: int) -> None:
+    value = float(f"{value:.{digits}g}")
+    assert print_one(value, NumberFormat(NumberKind.GENERAL, digits)) == f"{value:.{digits}g}"
+
+
+@given(finite)
+def test_general_of_seventeen_digits_is_printfs(value: float) -> None:
+    assert print_one(value, NumberFormat(NumberKind.GENERAL, 17)) == f"{value:.17g}"
+
+
+@given(motion, st.integers(0, 9))
+def test_fixed_is_printfs_f(value: float, digits: int) -> None:
+    value = float(f"{value:.{digits}f}")
+    assert print_one(value, NumberFormat(NumberKind.FIXED, digits)) == f"{value:.{digits}f}"
+
+
+@given(finite, st.integers(0, 20))
+def test_fixed_of_any_size_is_within_half_of_the_last_digit(value: float, digits: int) -> None:
+    text = print_one(value, NumberFormat(NumberKind.FIXED, digits))
+    assert abs(float(text) - value) <= 0.5001 * 10.0**-digits + abs(value) * 2**-52
+
+
+@given(motion, st.integers(1, 9))
+def test_trimmed_is_fixed_without_trailing_zeros(value: float, digits: int) -> None:
+    value = float(f"{value:.{digits}f}")
+    text = f"{value:.{digits}f}".rstrip("0").rstrip(".")
+    assert print_one(value, NumberFormat(NumberKind.TRIMMED, digits)) == text
+
+
+@given(finite, st.integers(0, 16))
+def test_scientific_is_printfs_e(value: float, digits: int) -> None:
+    assert print_one(value, NumberFormat(NumberKind.SCIENTIFIC, digits)) == f"{value:.{digits}e}"
+
+
+@given(finite)
+def test_shortest_is_pythons_repr(value: float) -> None:
+    number_format = NumberFormat(NumberKind.SHORTEST, point_zero=True)
+    text = print_one(value, number_format)
+    assert float(text) == value
+    if abs(value) < 1e16:
+        assert text == repr(value)
+
+
+def test_older_windows_libraries_print_three_exponent_digits() -> None:
+    number_format = NumberFormat(NumberKind.GENERAL, 6, exponent_digits=3)
+    assert print_one(-1.6201e-14, number_format) == "-1.6201e-014"
+    assert print_one(1.5e-123, number_format) == "1.5e-123"
+    assert print_one(0.0001, number_format) == "0.0001"
+    assert print_one(0.00001, number_format) == "1e-005"
+
+
+def test_flags_change_the_text() -> None:
+    assert print_one(2, NumberFormat(NumberKind.TRIMMED, 3, point_zero=True)) == "2.0"
+    assert print_one(-0.25, NumberFormat(NumberKind.FIXED, 4, bare_point=True)) == "-.2500"
+    assert print_one(1e-9, NumberFormat(NumberKind.GENERAL, 6, upper=True)) == "1E-09"
+
+
+STYLES: dict[str, tuple[Callable[[float], str], NumberKind]] = {
+    "%.6g": (lambda v: f"{v:.6g}", NumberKind.GENERAL),
+    "%.4f": (lambda v: f"{v:.4f}", NumberKind.FIXED),
+    "repr": (repr, NumberKind.SHORTEST),
+    "%.5e": (lambda v: f"{v:.5e}", NumberKind.SCIENTIFIC),
+}
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_formats_are_found_from_what_is_written(style: str) -> None:
+    write, kind = STYLES[style]
+    values = np.random.default_rng(7).normal(0, 30, (40, 3))
+    texts: list[list[bytes | None]] = [[write(float(v)).encode() for v in row] for row in values]
+    data = b"".join(b" ".join(t for t in row if t) + b"\n" for row in texts)
+    body = read_rows(data, 0, RowShape(False, (b"",), (3,)))
+    found = detect(body.statistics, body.values, texts)
+    assert {f.kind for f in found} == {kind}
+    for c in range(3):
+        assert printed(body.values[:, c], found[c]) == [row[c] for row in texts]
