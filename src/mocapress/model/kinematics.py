@@ -80,7 +80,8 @@ def translations(clip: Clip) -> Array:
     """Give each joint's place in its parent's frame: (F, J, 3), offset and channels together."""
     skeleton = _skeleton(clip)
     columns = _columns(clip)
-    placed = np.tile(np.array([joint.offset for joint in skeleton.joints]), (clip.frames, 1, 1))
+    offsets = np.array([joint.offset for joint in skeleton.joints], dtype=np.float64)
+    placed = np.tile(offsets, (clip.frames, 1, 1))
     for i in range(len(skeleton.joints)):
         for axis, kind in enumerate(("tx", "ty", "tz")):
             if kind in columns[i]:
