@@ -174,8 +174,10 @@ def parse(data: bytes | memoryview) -> Mcz:
             expected=f"{mcz.begin + length} bytes",
             found=f"{len(data)}",
         )
-    if mcz.frames * mcz.columns > 2**24 + 512 * length:
+    if mcz.frames * max(mcz.columns, 1) > 2**24 + 512 * length:
         raise CorruptError(f"{mcz.frames} x {mcz.columns} values in {length} bytes")
+    if mcz.size > 2**28 + 2**14 * len(data):
+        raise CorruptError(f"{mcz.size} bytes announced in a file of {len(data)}")
     return mcz
 
 

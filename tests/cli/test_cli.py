@@ -1,0 +1,193 @@
+"""The command line as scripts and people use it."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+import mocapress as mp
+from mocapress.cli.app import app
+
+AMC = b":FULLY-SPECIFIED\n:DEGREES\n" + b"".join(
+    b"%d\nroot %d.5 2 3 4 5 6\nhip 1.25 -0.125\n" % (i, i) for i in range(1, 9)
+)
+
+
+def mocapress(*words: object) -> Result:
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def process(*words: object, data: bytes = b"") -> subprocess.CompletedProcess[bytes]:
+    command = [sys.executable, "-c", "from mocapress.cli import main; main()", *map(str, words)]
+    return subprocess.run(command, input=data, capture_output=True, check=False)
+
+
+@pytest.fixture
+def walk(tmp_path: Path) -> Path:
+    file = tmp_path / "walk.amc"
+    file.write_bytes(AMC)
+    return file
+
+
+def test_there_and_back(walk: Path) -> None:
+    assert mocapress("compress", walk).exit_code == 0
+    packed = walk.with_name("walk.amc.mcz")
+    walk.unlink()
+    assert mocapress("verify", packed).exit_code == 0
+    assert mocapress("decompress", packed).exit_code == 0
+    assert walk.read_bytes() == AMC
+
+
+def test_nothing_is_overwritten_without_force(walk: Path) -> None:
+    packed = walk.with_name("walk.amc.mcz")
+    packed.write_bytes(b"precious")
+    result = mocapress("compress", walk)
+    assert result.exit_code == 1
+    assert "--force" in result.stderr
+    assert packed.read_bytes() == b"precious"
+    assert mocapress("compress", walk, "--force").exit_code == 0
+    assert mp.decompress(packed) == AMC
+
+
+def test_folders_keep_their_shape(tmp_path: Path) -> None:
+    for name in ("in/a/one.amc", "in/b/two.AMC", "in/b/notes.txt"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(AMC)
+    assert mocapress("compress", tmp_path / "in", "-o", tmp_path / "out", "-j", 2).exit_code == 0
+    found = sorted(str(p.relative_to(tmp_path / "out")) for p in (tmp_path / "out").rglob("*.mcz"))
+    assert found == ["a/one.amc.mcz", "b/two.AMC.mcz"]
+    result = mocapress("decompress", tmp_path / "out", "-o", tmp_path / "back")
+    assert result.exit_code == 0
+    assert (tmp_path / "back/b/two.AMC").read_bytes() == AMC
+
+
+def test_streams(walk: Path) -> None:
+    packed = process("compress", "-", data=AMC)
+    assert packed.returncode == 0
+    assert process("decompress", "-", data=packed.stdout).stdout == AMC
+    assert process("compress", walk, "-o", "-").stdout == packed.stdout
+
+
+def test_json_is_for_machines(walk: Path, tmp_path: Path) -> None:
+    missing = tmp_path / "missing.amc"
+    result = mocapress("compress", walk, missing, "--json")
+    assert result.exit_code == 1
+    done, failed = json.loads(result.stdout)
+    assert done["raw_bytes"] == len(AMC)
+    assert done["compressed_bytes"] == walk.with_name("walk.amc.mcz").stat().st_size
+    assert failed["file"] == str(missing)
+    assert failed["error"] == "FileNotFoundError"
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "says"),
+    [
+        (["compress", "missing.amc"], 1, "missing.amc: No such file"),
+        (["compress", "walk.amc", "--codec", "lzw"], 2, "unknown codec; expected app"),
+        (["compress", "walk.amc", "--codec", "app:t=0"], 2, "app:t; expected 1 to"),
+        (["decompress", "walk.amc"], 2, "-o gives it"),
+        (["decompress", "walk.amc", "-o", "x"], 1, "not an .mcz file"),
+        (["verify", "walk.amc"], 3, "not an .mcz file"),
+        (["info", "missing"], 1, "No such file"),
+        (["convert", "walk.amc", "-o", "x.bvh"], 1, "no skeleton"),
+        (["convert", "walk.amc"], 2, "say what to convert to"),
+        (["compress", "empty"], 2, "no .amc or .bvh or .asf files"),
+        (["compress"], 2, "Missing argument"),
+        (["squeeze"], 2, "No such command"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else None,
+)
+def test_errors_are_one_line_and_an_exit_code(
+    walk: Path, monkeypatch: pytest.MonkeyPatch, words: list[str], code: int, says: str
+) -> None:
+    monkeypatch.chdir(walk.parent)
+    Path("empty").mkdir()
+    done = process(*words)
+    error = done.stderr.decode()
+    assert done.returncode == code
+    assert says in " ".join(error.replace("│", " ").split())
+    assert "Traceback" not in error
+    assert done.stdout == b""
+
+
+def test_damaged_files_fail_verification(walk: Path) -> None:
+    mocapress("compress", walk)
+    packed = walk.with_name("walk.amc.mcz")
+    data = bytearray(packed.read_bytes())
+    data[-3] ^= 4
+    packed.write_bytes(data)
+    assert mocapress("verify", packed).exit_code == 3
+    restored = walk.with_name("restored.amc")
+    result = mocapress("decompress", packed, "-o", restored)
+    assert result.exit_code == 1
+    assert "checksum" in result.stderr
+    assert not restored.exists()
+
+
+def test_what_is_no_motion_is_stored_with_a_warning(tmp_path: Path) -> None:
+    file = tmp_path / "broken.bvh"
+    file.write_bytes(b"HIERARCHY\nROOT x\n")
+    result = mocapress("compress", file)
+    assert result.exit_code == 0
+    assert "warning" in result.stderr
+    assert "line 2" in result.stderr
+    assert mp.decompress(tmp_path / "broken.bvh.mcz") == file.read_bytes()
+
+
+def test_info_says_what_is_inside(samples: Path, tmp_path: Path) -> None:
+    packed = tmp_path / "clip.mcz"
+    assert mocapress("compress", samples / "cmu_01_01.amc", "-o", packed).exit_code == 0
+    result = mocapress(
+        "info", packed, samples / "freebvh.bvh", "--json", "--asf", samples / "cmu_01_01.asf"
+    )
+    assert result.exit_code == 0
+    inside, bvh = json.loads(result.stdout)
+    assert (inside["codec"], inside["frames"], inside["channels"]) == ("app", 2751, 62)
+    assert inside["MCR"] > inside["TCR"] > inside["ratio"] > 4
+    assert 0 < inside["APE"] < 1
+    assert bvh["frame_time"] == "0.0333333"
+    assert bvh["unit_suggested"].startswith("cm")
+    assert "cm" in mocapress("info", samples / "freebvh.bvh").stdout
+
+
+def test_convert_writes_a_file_that_others_read(samples: Path, tmp_path: Path) -> None:
+    result = mocapress("convert", samples / "cmu_01_01.amc", "-o", tmp_path / "walk.bvh")
+    assert result.exit_code == 0
+    assert "taken as 120" in result.stderr
+    assert mp.read(tmp_path / "walk.bvh").frames == 2751
+    result = mocapress("convert", samples / "freebvh.bvh", "--to", "amc", "-o", tmp_path)
+    assert result.exit_code == 0
+    assert mp.read(tmp_path / "freebvh.amc").skeleton is not None
+
+
+def test_bench_writes_rows_for_machines(samples: Path, tmp_path: Path) -> None:
+    result = mocapress(
+        *("bench", "lossless", samples / "freebvh.bvh"),
+        *("--only", "app,MPEG-4 DCT,gzip -9", "--json", tmp_path / "rows.json"),
+    )
+    assert result.exit_code == 0
+    rows = json.loads((tmp_path / "rows.json").read_text())
+    assert [row["codec"] for row in rows] == ["app", "MPEG-4 DCT", "gzip -9"]
+    needed = "clip format frames channels codec raw_bytes compressed_bytes payload_bytes"
+    needed += " model_bytes header_bytes encode_us_per_frame decode_us_per_frame exact"
+    for row in rows:
+        assert set(needed.split()) <= set(row)
+        assert row["exact"]
+        assert row["compressed_bytes"] == row["payload_bytes"] + row["header_bytes"]
+    assert "| gzip -9 |" in result.stdout
+
+
+def test_version_and_help() -> None:
+    assert process("--version").stdout.decode().strip() == f"mocapress {mp.__version__}"
+    helped = mocapress("--help").stdout
+    for command in ("compress", "decompress", "info", "verify", "convert", "bench"):
+        assert command in helped
+
+
+def test_shells_can_complete() -> None:
+    done = process("--show-completion", "bash")
+    assert done.returncode == 0
+    assert b"mocapress" in done.stdout
