@@ -70,7 +70,7 @@ def measure(
 def report(numbers: Numbers) -> str:
     """Give the numbers as Markdown."""
     shares = markdown(
-        ["|ideal α|", "0-0.5", "0.5-1", "1-2", "2-5", "above 5"],
+        ["magnitude", "0-0.5", "0.5-1", "1-2", "2-5", "above 5"],
         [["paper, 1021 clips", *(f"{share} %" for share in _PAPER_FIG5)]]
         + [[f"t = {t}", *(f"{x:.1f} %" for x in row)] for t, row in numbers["alpha"].items()],
     )
@@ -148,8 +148,8 @@ def draw(numbers: Numbers, folder: Path) -> list[Path]:
     left.set_xlabel("frames per cluster, t")
     left.set_ylabel("ratio")
     right.set_ylabel("average prediction error")
-    left.legend(loc="center left")
-    right.legend(loc="center right")
+    lines = [*left.get_lines(), *right.get_lines()]
+    left.legend(lines, [line.get_label() for line in lines], loc="lower right")
     save("fig9_ratio_and_error.png")
     return drawn
 

@@ -189,6 +189,7 @@ def _from_ordinals(ordinals: NDArray[np.int64], plan: NDArray[np.int32]) -> NDAr
     single = ordinals.astype(np.int32)
     single = single ^ (single >> 31 & 0x7FFFFFFF)
     double = ordinals ^ (ordinals >> 63 & 0x7FFFFFFFFFFFFFFF)
-    snapped = single.view(np.float32).astype(np.float64)
+    with np.errstate(invalid="ignore"):  # of float64 columns this is no number
+        snapped = single.view(np.float32).astype(np.float64)
     _core.snap(snapped, np.where(plan[:, 1:2] == 2, plan, 0).astype(np.int32))
     return np.where(plan[:, 1] == 0, double.view(np.float64), snapped)

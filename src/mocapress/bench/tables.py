@@ -17,10 +17,10 @@ def markdown(header: list[str], rows: Iterable[list[str]]) -> str:
 def totals(rows: list[Row], memory: dict[str, float] | None = None) -> str:
     """Sum over all clips, one line per contender, strongest first."""
     lines = []
-    for codec, own in sorted(_by(rows, "codec").items(), key=lambda item: -_ratio(item[1])):
+    for codec, own in sorted(grouped(rows, "codec").items(), key=lambda item: -_ratio(item[1])):
         samples = sum(row["frames"] * row["channels"] for row in own)
-        raw, small = _sum(own, "raw_bytes"), _sum(own, "compressed_bytes")
-        frames = _sum(own, "frames")
+        raw, small = sum_of(own, "raw_bytes"), sum_of(own, "compressed_bytes")
+        frames = sum_of(own, "frames")
         lines.append(
             [
                 codec,
@@ -30,8 +30,8 @@ def totals(rows: list[Row], memory: dict[str, float] | None = None) -> str:
                 f"{8 * small / samples:.2f}",
                 f"{_weighted(own, 'encode_us_per_frame') / frames:.2f}",
                 f"{_weighted(own, 'decode_us_per_frame') / frames:.2f}",
-                f"{raw / 1e6 / _sum(own, 'compress_s'):.1f}",
-                f"{raw / 1e6 / _sum(own, 'decompress_s'):.1f}",
+                f"{raw / 1e6 / sum_of(own, 'compress_s'):.1f}",
+                f"{raw / 1e6 / sum_of(own, 'decompress_s'):.1f}",
                 f"{memory[codec]:.0f}" if memory and codec in memory else "",
                 f"{sum(row['exact'] for row in own)}/{len(own)}",
             ]
@@ -46,13 +46,13 @@ def by_group(rows: list[Row]) -> str:
     groups: dict[str, list[Row]] = defaultdict(list)
     for row in rows:
         groups[str(PurePath(row["clip"]).parent)].append(row)
-    codecs = list(_by(rows, "codec"))
+    codecs = list(grouped(rows, "codec"))
     lines = []
     for group, own in [*groups.items(), ("all", rows)]:
-        by_codec = _by(own, "codec")
+        by_codec = grouped(own, "codec")
         first = by_codec[codecs[0]]
         lines.append(
-            [group, str(len(first)), f"{_sum(first, 'frames'):.0f}"]
+            [group, str(len(first)), f"{sum_of(first, 'frames'):.0f}"]
             + [f"{_ratio(by_codec[codec]):.3f}" for codec in codecs]
         )
     return markdown(["clips of", "clips", "frames", *codecs], lines)
@@ -60,28 +60,30 @@ def by_group(rows: list[Row]) -> str:
 
 def by_clip(rows: list[Row]) -> str:
     """Give ratios per clip, one column per contender."""
-    codecs = list(_by(rows, "codec"))
+    codecs = list(grouped(rows, "codec"))
     lines = [
         [clip, f"{own[0]['frames']}", f"{own[0]['raw_bytes']:,}"]
         + [f"{row['raw_bytes'] / row['compressed_bytes']:.3f}" for row in own]
-        for clip, own in _by(rows, "clip").items()
+        for clip, own in grouped(rows, "clip").items()
     ]
     return markdown(["clip", "frames", "raw bytes", *codecs], lines)
 
 
-def _by(rows: list[Row], key: str) -> dict[str, list[Row]]:
+def grouped(rows: list[Row], key: str) -> dict[str, list[Row]]:
+    """Group rows."""
     groups: dict[str, list[Row]] = defaultdict(list)
     for row in rows:
         groups[row[key]].append(row)
     return groups
 
 
-def _sum(rows: list[Row], key: str) -> float:
+def sum_of(rows: list[Row], key: str) -> float:
+    """Add up a field, never to 0, so that it can divide."""
     return float(sum(row[key] for row in rows)) or 1e-9
 
 
 def _ratio(rows: list[Row]) -> float:
-    return _sum(rows, "raw_bytes") / _sum(rows, "compressed_bytes")
+    return sum_of(rows, "raw_bytes") / sum_of(rows, "compressed_bytes")
 
 
 def _weighted(rows: list[Row], key: str) -> float:

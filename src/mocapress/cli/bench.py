@@ -8,7 +8,7 @@ from typing import Any
 import typer
 
 from mocapress import api, codecs
-from mocapress.bench import app_figures, lossless, tables
+from mocapress.bench import app_figures, lossless, pareto, tables
 from mocapress.cli.batch import usage
 from mocapress.errors import MocapressError, ParameterError
 from mocapress.files import write_whole
@@ -47,7 +47,7 @@ def bench_lossless_files(
     if len(paths) <= 10:
         parts.append(tables.by_clip(rows))
     if plots:
-        numbers = _figures(paths, plots)
+        numbers = _figures(paths, rows, plots)
         parts.append(app_figures.report(numbers))
     for part in parts:
         print(part)
@@ -93,7 +93,7 @@ def demo_files() -> None:
         raise typer.Exit(3)
 
 
-def _figures(paths: list[Path], folder: Path) -> dict[str, Any]:
+def _figures(paths: list[Path], rows: list[tables.Row], folder: Path) -> dict[str, Any]:
     clips = []
     for path in paths:
         try:
@@ -103,6 +103,7 @@ def _figures(paths: list[Path], folder: Path) -> dict[str, Any]:
     numbers = app_figures.measure(clips, _progress(0))
     try:
         app_figures.draw(numbers, folder)
+        pareto.draw(rows, folder / "ratio_and_speed.png")
     except ImportError:
         usage("--plots needs matplotlib: pip install 'mocapress[bench]'")
     return numbers

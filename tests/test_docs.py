@@ -1,0 +1,56 @@
+"""What the README shows works as shown."""
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from mocapress import codecs
+from mocapress.cli.app import app
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text()
+
+
+def test_the_python_example_runs(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(ROOT)
+    (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    exec(code, {})
+    promised = re.findall(r"print\(.*?\)  # (\(.*?\))", code)
+    assert capsys.readouterr().out.split("\n")[:-1] == promised
+
+
+def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for suffix in ("amc", "asf"):
+        shutil.copy(ROOT / f"samples/cmu_01_01.{suffix}", tmp_path / f"walk.{suffix}")
+    (tmp_path / "clips").mkdir()
+    shutil.copy(ROOT / "samples/freebvh.bvh", tmp_path / "clips")
+    monkeypatch.chdir(tmp_path)
+    commands = re.findall(r"^\$ mocapress (.*?)(?:  #.*)?$", README, re.MULTILINE)
+    assert len(commands) == 7
+    for command in commands:
+        if command.startswith("decompress"):
+            Path("walk.amc").rename("original.amc")
+        words = command.split()
+        if words[0] == "bench":  # the whole benchmark is too long for a test
+            words = [*words[: words.index("--plots")], "--only", "app,gzip -9"]
+        result = CliRunner().invoke(app, words)
+        assert result.exit_code == 0, (command, result.output)
+    assert Path("walk.amc").read_bytes() == Path("original.amc").read_bytes()
+
+
+def test_every_codec_is_in_the_readme_and_the_format() -> None:
+    described = (ROOT / "docs/format.md").read_text()
+    for name in codecs.codec_ids():
+        assert f"| `{name}` |" in README
+        assert f"### `{name}`" in described
+
+
+def test_links_lead_somewhere() -> None:
+    for page in [ROOT / "README.md", *ROOT.glob("docs/**/*.md")]:
+        for link in re.findall(r"\]\((?!http)([^)#]+)\)", page.read_text()):
+            assert (page.parent / link).exists(), f"{page}: {link}"
