@@ -36,6 +36,8 @@ def codec_contenders() -> dict[str, Codec]:
     found["non-alpha PP"] = Parallelogram()
     found["MPEG-4 LP"] = PreviousFrame()
     found["MPEG-4 DCT"] = Dct()
+    found["non-alpha PP, limit 53"] = Parallelogram(mantissa_limit=53)
+    found["MPEG-4 LP, limit 53"] = PreviousFrame(mantissa_limit=53)
     return found
 
 
