@@ -187,7 +187,7 @@ def test_killed_at_any_moment_the_old_file_or_the_new_one(samples: Path, tmp_pat
         f"target, source = {str(target)!r}, {str(source)!r}\n"
         "while True:\n"
         " write_whole(target, api.compress(source, 'app:t=14'), force=True)\n"
-        f" write_whole(target, {old!r}, force=True)\n"
+        f" write_whole(target, api.compress(source) and {old!r}, force=True)\n"
     )
     moments = random.Random(4)
     seen = set()
