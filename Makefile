@@ -28,7 +28,8 @@ tests: $(VENV)/.built corpus
 fuzzers := $(patsubst core/fuzz/fuzz_%.cpp,build/fuzz/%,$(wildcard core/fuzz/fuzz_*.cpp))
 kernels := $(filter-out core/bind%,$(wildcard core/*.cpp))
 
-sanitize: $(fuzzers)
+sanitize: $(fuzzers) $(VENV)/.built
+	$(BIN)/python core/fuzz/fuzz_container.py -runs=$$(($(FUZZ_RUNS) / 10))
 	@for target in $(fuzzers); do echo $$target; \
 	    $$target $$(ls -d core/fuzz/seeds/$$(basename $$target)/* 2>/dev/null) -runs=$(FUZZ_RUNS) \
 	    || exit 1; done

@@ -13,6 +13,8 @@ from mocapress.cli.batch import usage
 from mocapress.errors import MocapressError, ParameterError
 from mocapress.files import write_whole
 
+_FEW = 10
+
 
 def bench_lossless_files(
     corpus: Path | None,
@@ -44,7 +46,7 @@ def bench_lossless_files(
     names = list(dict.fromkeys(row["codec"] for row in rows))
     memory = {name: lossless.peak_memory(largest, name)["peak_mb"] for name in names}
     parts = [tables.totals(rows, memory), tables.by_group(rows)]
-    if len(paths) <= 10:
+    if len(paths) <= _FEW:
         parts.append(tables.by_clip(rows))
     if plots:
         numbers = _figures(paths, rows, plots)
@@ -54,7 +56,8 @@ def bench_lossless_files(
     if json:
         write_whole(json, jsonlib.dumps(rows, indent=1).encode(), force=force)
     if markdown:
-        write_whole(markdown, "\n".join(parts).encode(), force=force)
+        whole = parts if len(paths) <= _FEW else [*parts, tables.by_clip(rows)]
+        write_whole(markdown, "\n".join(whole).encode(), force=force)
     if not all(row["exact"] for row in rows):
         typer.echo("mocapress: not everything was restored exactly", err=True)
         raise typer.Exit(3)
@@ -87,8 +90,7 @@ def demo_files() -> None:
             f"{row['sha256'][:8]} {same}",
         )
         last = row["clip"]
-    console = Console()
-    console.print(table, width=None if console.is_terminal else 110)
+    Console(width=None if sys.stdout.isatty() else 110).print(table)
     if not all(row["exact"] for row in rows):
         raise typer.Exit(3)
 

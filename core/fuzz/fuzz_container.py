@@ -1,0 +1,76 @@
+"""Fuzz target of the `.mcz` reader: any bytes give an error of mocapress's own, or a file.
+
+`python core/fuzz/fuzz_container.py -runs=N` runs N deterministic mutations of the golden files, half of
+them with their checksums made right again, so that what lies behind these is reached.
+`one_input` is what atheris takes.
+"""
+
+import random
+import sys
+import zlib
+from pathlib import Path
+
+import mocapress as mp
+from mocapress.binary import Reader, Writer
+from mocapress.errors import MocapressError
+
+GOLDEN = Path(__file__).parents[2] / "tests/golden"
+
+
+def one_input(data: bytes) -> None:
+    """Restore, and load some frames."""
+    for work in (mp.decompress, lambda blob: mp.load(blob, frames=slice(3, 9))):
+        try:
+            work(data)
+        except MocapressError:
+            pass
+
+
+def forged(data: bytes) -> bytes:
+    """Make the sections' checksums right, as far as there are sections."""
+    reader = Reader(data, "file")
+    made = bytearray(reader.raw(min(5, len(data))))
+    try:
+        while True:
+            number, content = reader.raw(1), reader.bytes()
+            section = Writer()
+            section.data += number
+            section.bytes(content)
+            made += section.data + zlib.crc32(section.data).to_bytes(4, "little")
+            reader.raw(4)
+            if number == b"\x04":
+                break
+    except MocapressError:
+        return data
+    return bytes(made) + data[reader.position :]
+
+
+def mutated(data: bytes, chance: random.Random) -> bytes:
+    """Change, cut out or repeat some bytes, mostly near the front, where the sections are."""
+    made = bytearray(data)
+    for _ in range(chance.randint(1, 4)):
+        place = min(int(chance.expovariate(1 / 80)), len(made) - 1)
+        change = chance.randrange(4)
+        if change == 0:
+            made[place] = chance.randrange(256)
+        elif change == 1:
+            made[place] ^= 1 << chance.randrange(8)
+        elif change == 2:
+            del made[place : place + chance.randint(1, 8)]
+        else:
+            made[place:place] = made[place : place + chance.randint(1, 8)]
+    return bytes(made)
+
+
+def main(runs: int) -> None:
+    """Run so many mutations."""
+    chance = random.Random(1)
+    seeds = [path.read_bytes() for path in sorted(GOLDEN.glob("*.mcz"))]
+    for run in range(runs):
+        data = mutated(chance.choice(seeds), chance)
+        one_input(forged(data) if run % 2 else data)
+    print(f"{runs} mutations of {len(seeds)} files passed")
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1].removeprefix("-runs=")) if sys.argv[1:] else 20_000)
