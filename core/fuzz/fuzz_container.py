@@ -1,7 +1,7 @@
 """Fuzz target of the `.mcz` reader: any bytes give an error of mocapress's own, or a file.
 
-`python core/fuzz/fuzz_container.py -runs=N` runs N deterministic mutations of the golden files, half of
-them with their checksums made right again, so that what lies behind these is reached.
+`python core/fuzz/fuzz_container.py -runs=N` runs N deterministic mutations of the golden files,
+half of them with checksums made right again, so that what lies behind these is reached.
 `one_input` is what atheris takes.
 """
 
