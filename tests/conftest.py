@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+from mocapress import codecs
+
 SAMPLES = Path(__file__).parents[1] / "samples"
 # Machines differ in speed: what counts is what holds, not how fast.
 settings.register_profile(
@@ -30,3 +32,11 @@ def corpus() -> Path:
 @pytest.fixture(scope="session")
 def corpus_clips(corpus: Path) -> list[Path]:
     return sorted(p for p in corpus.rglob("*") if p.suffix.lower() in (".amc", ".bvh"))
+
+
+@pytest.fixture
+def learner(monkeypatch: pytest.MonkeyPatch) -> str:
+    """Register the codec that these tests bring with them."""
+    registry = codecs._REGISTRY | {"learner": ("learner", "Learner")}
+    monkeypatch.setattr(codecs, "_REGISTRY", registry)
+    return "learner"

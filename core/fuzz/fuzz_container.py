@@ -1,4 +1,4 @@
-"""Fuzz target of the `.mcz` reader: any bytes give an error of mocapress's own, or a file.
+"""Fuzz target of the `.mcz` and `.mcm` readers: any bytes give an error of ours, or the contents.
 
 `python core/fuzz/fuzz_container.py -runs=N` runs N deterministic mutations of the golden files,
 half of them with checksums made right again, so that what lies behind these is reached.
@@ -18,8 +18,8 @@ GOLDEN = Path(__file__).parents[2] / "tests/golden"
 
 
 def one_input(data: bytes) -> None:
-    """Restore, and load some frames."""
-    for work in (mp.decompress, lambda blob: mp.load(blob, frames=slice(3, 9))):
+    """Restore, load some frames, and read as a model."""
+    for work in (mp.decompress, lambda blob: mp.load(blob, frames=slice(3, 9)), mp.load_model):
         try:
             work(data)
         except MocapressError:
@@ -31,7 +31,7 @@ def forged(data: bytes) -> bytes:
     reader = Reader(data, "file")
     made = bytearray(reader.raw(min(5, len(data))))
     try:
-        while True:
+        while reader.position < len(data):
             number, content = reader.raw(1), reader.bytes()
             section = Writer()
             section.data += number
@@ -65,7 +65,7 @@ def mutated(data: bytes, chance: random.Random) -> bytes:
 def main(runs: int) -> None:
     """Run so many mutations."""
     chance = random.Random(1)
-    seeds = [path.read_bytes() for path in sorted(GOLDEN.glob("*.mcz"))]
+    seeds = [path.read_bytes() for path in sorted(GOLDEN.glob("*.mc[zm]"))]
     for run in range(runs):
         data = mutated(chance.choice(seeds), chance)
         one_input(forged(data) if run % 2 else data)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from mocapress.errors import (
     CorruptError,
     FormatError,
+    MissingModelError,
     MocapressError,
     ParameterError,
     UnsupportedError,
@@ -21,11 +22,13 @@ from mocapress.errors import (
 from mocapress.version import __version__
 
 if TYPE_CHECKING:
-    from mocapress.api import compress, decompress, load, read, write
-    from mocapress.codecs import codec
+    from mocapress.api import compress, read, write
+    from mocapress.codecs import Model, codec
     from mocapress.convert import to_amc_clip, to_bvh_clip
     from mocapress.model import Clip, Column, Joint, NumberFormat, Skeleton
     from mocapress.model.kinematics import positions, rotations
+    from mocapress.restore import decompress, load
+    from mocapress.trained import load_model, save_model, train
 
 __all__ = [
     "Clip",
@@ -33,7 +36,9 @@ __all__ = [
     "CorruptError",
     "FormatError",
     "Joint",
+    "MissingModelError",
     "MocapressError",
+    "Model",
     "NumberFormat",
     "ParameterError",
     "Skeleton",
@@ -44,21 +49,26 @@ __all__ = [
     "compress",
     "decompress",
     "load",
+    "load_model",
     "positions",
     "read",
     "rotations",
+    "save_model",
     "to_amc_clip",
     "to_bvh_clip",
+    "train",
     "write",
 ]
 
 # NumPy and the extension are loaded when they are first needed: importing mocapress stays quick.
 _LAZY = {
-    **dict.fromkeys(("compress", "decompress", "load", "read", "write"), "mocapress.api"),
-    "codec": "mocapress.codecs",
+    **dict.fromkeys(("compress", "read", "write"), "mocapress.api"),
+    **dict.fromkeys(("decompress", "load"), "mocapress.restore"),
+    **dict.fromkeys(("Model", "codec"), "mocapress.codecs"),
     **dict.fromkeys(("to_amc_clip", "to_bvh_clip"), "mocapress.convert"),
     **dict.fromkeys(("Clip", "Column", "Joint", "NumberFormat", "Skeleton"), "mocapress.model"),
     **dict.fromkeys(("positions", "rotations"), "mocapress.model.kinematics"),
+    **dict.fromkeys(("load_model", "save_model", "train"), "mocapress.trained"),
 }
 
 

@@ -1,13 +1,17 @@
 """What ``mocapress info`` says of a clip or a ``.mcz`` file."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from mocapress import api, codecs
-from mocapress.codecs import Encoded
+from mocapress.codecs import Encoded, Model
 from mocapress.container import Kind, parse
 from mocapress.convert import suggest_unit
+from mocapress.errors import MissingModelError
 from mocapress.model import Clip
+from mocapress.restore import chunks_of
+from mocapress.trained import Place, find_model
 
 
 def describe_file(path: Path, *, asf_path: Path | None = None) -> dict[str, Any]:
@@ -16,18 +20,19 @@ def describe_file(path: Path, *, asf_path: Path | None = None) -> dict[str, Any]
     return {"bytes": path.stat().st_size, "format": path.suffix.lower()[1:]} | describe_clip(clip)
 
 
-def describe_clip(clip: Clip) -> dict[str, Any]:
-    """Describe a clip: size, timing, skeleton and number formats."""
+def describe_clip(clip: Clip, frames: int | None = None) -> dict[str, Any]:
+    """Describe a clip of so many frames (None: its own): size, timing, skeleton, number formats."""
     skeleton, seconds = clip.skeleton, None
+    frames = clip.frames if frames is None else frames
     if clip.frame_time:
-        seconds = float(clip.frame_time * clip.frames)
+        seconds = float(clip.frame_time * frames)
     kinds = {
         f"{column.decimal.kind.name.lower()} {column.decimal.digits}"
         for column in clip.columns
         if column.decimal
     }
     return {
-        "frames": clip.frames,
+        "frames": frames,
         "channels": clip.channels,
         "frame_time": None if clip.frame_time is None else str(clip.frame_time),
         "seconds": seconds,
@@ -37,16 +42,32 @@ def describe_clip(clip: Clip) -> dict[str, Any]:
     }
 
 
-def describe_mcz(blob: bytes, *, asf_path: Path | None = None) -> dict[str, Any]:
+def describe_model(model: Model, size: int) -> dict[str, Any]:
+    """Describe a model, of a file of ``size`` bytes."""
+    return {
+        "format": "mcm",
+        "codec": model.codec,
+        "bytes": size,
+        "payload_bytes": len(model.payload),
+        "sha256": model.digest.hex(),
+    }
+
+
+def describe_mcz(
+    blob: bytes, *, asf_path: Path | None = None, models: Sequence[Place] = ()
+) -> dict[str, Any]:
     """Describe a ``.mcz`` file: what it holds, and where its bytes go.
 
     Of codecs that measure themselves, the measures follow: MCR, TCR and APE of APP (Eqs. 11-13).
+    A file whose model is missing is described without these.
     """
     mcz = parse(blob)
     payloads = sum(entry.length for entry in mcz.index)
     facts: dict[str, Any] = {
         "format": mcz.kind.name.lower(),
         "codec": mcz.codec or "general-purpose",
+        "model": mcz.model.hex() or None,
+        "model_found": _found(mcz.model, models) if mcz.model else None,
         "raw_bytes": mcz.size,
         "compressed_bytes": len(blob),
         "ratio": mcz.size / len(blob),
@@ -58,12 +79,20 @@ def describe_mcz(blob: bytes, *, asf_path: Path | None = None) -> dict[str, Any]
     }
     if mcz.kind is Kind.BYTES:
         return facts
-    clip = api.load(blob, asf_path=asf_path)
-    facts |= describe_clip(clip)
-    if clip.frames and clip.channels:
-        facts["bits_per_sample"] = 8 * len(blob) / (clip.frames * clip.channels)
+    columns = api.load(blob, slice(0), asf_path=asf_path)
+    facts |= describe_clip(columns, mcz.frames)
+    if mcz.frames and mcz.columns:
+        facts["bits_per_sample"] = 8 * len(blob) / (mcz.frames * mcz.columns)
     measure = getattr(codecs.codec(mcz.codec), "measure", None)
-    if measure is not None:
-        encoded = Encoded(mcz.codec_header, api.chunks_of(mcz))
-        facts |= measure(clip, encoded, mcz.size)
+    if measure is not None and facts["model_found"] is not False:
+        clip = api.load(blob, asf_path=asf_path, models=models)
+        facts |= measure(clip, Encoded(mcz.codec_header, chunks_of(mcz)), mcz.size)
     return facts
+
+
+def _found(digest: bytes, models: Sequence[Place]) -> bool:
+    try:
+        find_model(digest, models)
+    except MissingModelError:
+        return False
+    return True

@@ -82,5 +82,9 @@ class ParameterError(MocapressError):
     """A parameter of a codec or command has a value it cannot have."""
 
 
+class MissingModelError(MocapressError):
+    """The model that a compressed file names is in none of the places where it was looked for."""
+
+
 class VerificationError(MocapressError):
     """What was decoded is not what was encoded; nothing has been written."""

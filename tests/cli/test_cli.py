@@ -1,6 +1,7 @@
 """The command line as scripts and people use it."""
 
 import json
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +12,7 @@ from typer.testing import CliRunner, Result
 import mocapress as mp
 from mocapress.cli.app import app
 
+GOLDEN = Path(__file__).parents[1] / "golden"
 AMC = b":FULLY-SPECIFIED\n:DEGREES\n" + b"".join(
     b"%d\nroot %d.5 2 3 4 5 6\nhip 1.25 -0.125\n" % (i, i) for i in range(1, 9)
 )
@@ -88,6 +90,14 @@ def test_json_is_for_machines(walk: Path, tmp_path: Path) -> None:
         (["compress", "missing.amc"], 1, "missing.amc: No such file"),
         (["compress", "walk.amc", "--codec", "lzw"], 2, "unknown codec; expected app"),
         (["compress", "walk.amc", "--codec", "app:t=0"], 2, "app:t; expected 1 to"),
+        (["compress", "walk.amc", "--codec", "app", "--level", "3"], 2, "app has no levels"),
+        (["compress", "walk.amc", "--level", "10"], 2, "10 is not in the range 1<=x<=9"),
+        (["compress", "walk.amc", "--model", "no.mcm"], 1, "no.mcm: No such file"),
+        (["compress", "walk.amc", "--model", "walk.amc"], 1, "walk.amc, byte 0: not an .mcm file"),
+        (["compress", "walk.amc", "--codec", "app", "--model", "v1.mcm"], 2, "takes no model"),
+        (["train", "walk.amc", "-o", "x.mcm", "--codec", "app"], 2, "app takes no model"),
+        (["train", "walk.amc"], 2, "Missing option '-o'"),
+        (["info", "walk.amc", "--model", "no.mcm"], 1, "no.mcm: No such file"),
         (["decompress", "walk.amc"], 2, "-o gives it"),
         (["decompress", "walk.amc", "-o", "x"], 1, "not an .mcz file"),
         (["verify", "walk.amc"], 3, "not an .mcz file"),
@@ -105,12 +115,68 @@ def test_errors_are_one_line_and_an_exit_code(
 ) -> None:
     monkeypatch.chdir(walk.parent)
     Path("empty").mkdir()
+    shutil.copy(GOLDEN / "v1_learner.mcm", "v1.mcm")
     done = process(*words)
     error = done.stderr.decode()
     assert done.returncode == code
     assert says in " ".join(error.replace("│", " ").split())
     assert "Traceback" not in error
     assert done.stdout == b""
+
+
+@pytest.mark.usefixtures("learner")
+def test_models_are_learned_and_used(tmp_path: Path, samples: Path, walk: Path) -> None:
+    model, clips = tmp_path / "models/walks.mcm", tmp_path / "clips"
+    clips.mkdir()
+    shutil.copy(samples / "freebvh.bvh", clips / "a.bvh")
+    (clips / "broken.bvh").write_bytes(b"HIERARCHY")
+    learn = ("train", clips, "-o", model, "--codec", "learner")
+    learned = mocapress(*learn, "--json")
+    assert learned.exit_code == 0
+    assert "left out" in learned.stderr
+    (facts,) = json.loads(learned.stdout)
+    assert (facts["clips"], facts["frames"]) == (1, mp.read(clips / "a.bvh").frames)
+    assert facts["bytes"] == model.stat().st_size
+    again = mocapress(*learn)
+    assert again.exit_code == 1
+    assert "--force" in again.stderr
+
+    packed = tmp_path / "a.bvh.mcz"
+    made = mocapress(
+        *("compress", clips / "a.bvh", "-o", packed, "--model", model),
+        *("--codec", "learner", "--level", 9),
+    )
+    assert made.exit_code == 0
+    for given in (model, model.parent):
+        assert mocapress("verify", packed, "--model", given).exit_code == 0
+    for command, code in (("verify", 3), ("decompress", 1)):
+        result = mocapress(command, packed)
+        assert result.exit_code == code
+        assert f"model {facts['sha256']} is needed; expected it in {tmp_path}" in result.stderr
+    back = tmp_path / "back.bvh"
+    assert mocapress("decompress", packed, "-o", back, "--model", model).exit_code == 0
+    assert back.read_bytes() == (clips / "a.bvh").read_bytes()
+    converted = mocapress("convert", packed, "-o", tmp_path / "a.amc", "--model", model)
+    assert converted.exit_code == 0
+
+    said = mocapress("info", packed, model, "--json")
+    assert said.exit_code == 0
+    clip, about = json.loads(said.stdout)
+    assert (clip["codec"], clip["model"]) == ("learner:level=9", facts["sha256"])
+    assert (clip["frames"], clip["model_found"]) == (facts["frames"], False)
+    assert (about["format"], about["codec"], about["sha256"]) == ("mcm", "learner", clip["model"])
+    (clip,) = json.loads(mocapress("info", packed, "--json", "--model", model).stdout)
+    assert clip["model_found"]
+    shutil.copy(model, tmp_path)
+    assert mocapress("decompress", packed, "-o", back, "--force").exit_code == 0
+
+
+def test_learning_from_broken_files_alone_fails(tmp_path: Path, learner: str) -> None:
+    (tmp_path / "broken.bvh").write_bytes(b"HIERARCHY")
+    result = mocapress("train", tmp_path, "-o", tmp_path / "x.mcm", "--codec", learner)
+    assert result.exit_code == 2
+    assert "nothing to learn from" in result.stderr
+    assert not (tmp_path / "x.mcm").exists()
 
 
 def test_damaged_files_fail_verification(walk: Path) -> None:
@@ -182,7 +248,7 @@ def test_bench_writes_rows_for_machines(samples: Path, tmp_path: Path) -> None:
 def test_version_and_help() -> None:
     assert process("--version").stdout.decode().strip() == f"mocapress {mp.__version__}"
     helped = mocapress("--help").stdout
-    for command in ("compress", "decompress", "info", "verify", "convert", "bench"):
+    for command in ("compress", "decompress", "train", "info", "verify", "convert", "bench"):
         assert command in helped
 
 

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from learner import Learner
 from numpy.typing import NDArray
 
 from mocapress import codecs
@@ -213,3 +214,21 @@ def test_changed_parameters_travel_as_text() -> None:
     for wrong in ("nothing", "app:t=0", "app:t=x", "app:table=zero", "app:t"):
         with pytest.raises(ParameterError):
             codecs.codec(wrong)
+
+
+@pytest.mark.parametrize("name", codecs.codec_ids())
+def test_levels_are_parameters(name: str) -> None:
+    made = codecs.codec(name)
+    for level in (1, 9):
+        if codecs.has_level(made):
+            assert codecs.with_level(made, level) == codecs.codec(f"{name}:level={level}")
+        else:
+            with pytest.raises(ParameterError, match=f"codec {name} has no levels"):
+                codecs.with_level(made, level)
+
+
+def test_there_are_nine_levels() -> None:
+    assert codecs.spec(codecs.with_level(Learner(), 1)) == "learner:level=1"
+    for wrong in (0, 10):
+        with pytest.raises(ParameterError, match="level; expected 1 to 9"):
+            codecs.with_level(Learner(), wrong)

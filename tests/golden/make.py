@@ -66,3 +66,7 @@ if __name__ == "__main__":
             (HERE / name).write_bytes(data)
             target.write_bytes(mp.compress(data, codec))
             print(target)
+    model = HERE / "v1_learner.mcm"
+    if not model.exists():
+        mp.save_model(mp.Model("learner", bytes(range(100)) * 2), model)
+        print(model)

@@ -10,7 +10,6 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from mocapress import api
 from mocapress.bench.contenders import Tool, codec_contenders, tool_contenders
 from mocapress.codecs import Codec
 from mocapress.container import Kind, pack, pack_file, parse, unpack
@@ -18,6 +17,7 @@ from mocapress.errors import FormatError, ParameterError
 from mocapress.formats import asf
 from mocapress.formats.files import find_asf, sniff, split
 from mocapress.formats.layout import Layout
+from mocapress.restore import chunks_of
 
 Row = dict[str, Any]
 T = TypeVar("T")
@@ -115,7 +115,7 @@ def _codec_row(data: bytes, path: Path, codec: Codec, repeat: int) -> Row:
         repeat,
     )
     (mcz, read), open_s = _best(lambda: _open(blob), repeat)
-    chunks = api.chunks_of(mcz)
+    chunks = chunks_of(mcz)
     values, decode_s = _best(lambda: codec.decode(mcz.codec_header, chunks, clip.columns), repeat)
     restored, join_s = _best(lambda: read.join(values), repeat)
     payload = sum(len(chunk.payload) for chunk in encoded.chunks)

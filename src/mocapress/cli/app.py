@@ -31,6 +31,16 @@ Asf = Annotated[
     Path | None,
     typer.Option("--asf", help="Skeleton of the AMC files; else the ASF beside each.", metavar="F"),
 ]
+Models = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--model",
+        help="Model that files need, or a folder of models; may be repeated. Looked for, too: "
+        "beside the files, and in the folders of MOCAPRESS_MODELS.",
+        metavar="PATH",
+        show_default=False,
+    ),
+]
 Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks.", hidden=True)]
 
 
@@ -61,6 +71,14 @@ def compress(
     codec: Annotated[
         str, typer.Option("--codec", help="Codec, e.g. app:t=15,table=k3-non-uniform.")
     ] = "app",
+    level: Annotated[
+        int | None,
+        typer.Option("--level", min=1, max=9, help="1 (fast) to 9 (strong); as codec ID:level=N."),
+    ] = None,
+    model: Annotated[
+        Path | None,
+        typer.Option("--model", help="Model from mocapress train, needed again to decompress."),
+    ] = None,
     asf: Asf = None,
     embed_asf: Annotated[
         bool, typer.Option("--embed-asf", help="Store the skeleton of AMC files, too.")
@@ -74,7 +92,16 @@ def compress(
     from mocapress.cli.coding import compress_files
 
     compress_files(
-        inputs, output, codec, asf=asf, embed_asf=embed_asf, jobs=jobs, force=force, json=json
+        inputs,
+        output,
+        codec,
+        level=level,
+        model=model,
+        asf=asf,
+        embed_asf=embed_asf,
+        jobs=jobs,
+        force=force,
+        json=json,
     )
 
 
@@ -82,6 +109,7 @@ def compress(
 def decompress(
     inputs: Inputs,
     output: Output = None,
+    models: Models = None,
     jobs: Jobs = 1,
     force: Force = False,
     json: Json = False,
@@ -90,25 +118,56 @@ def decompress(
     """Restore the original files, byte for byte."""
     from mocapress.cli.coding import decompress_files
 
-    decompress_files(inputs, output, jobs=jobs, force=force, json=json)
+    decompress_files(inputs, output, models=models or [], jobs=jobs, force=force, json=json)
 
 
 @app.command()
-def verify(inputs: Inputs, jobs: Jobs = 1, json: Json = False, debug: Debug = False) -> None:
+def verify(
+    inputs: Inputs,
+    models: Models = None,
+    jobs: Jobs = 1,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
     """Decode .mcz files and check every checksum; exit code 3 when one is damaged."""
     from mocapress.cli.coding import verify_files
 
-    verify_files(inputs, jobs=jobs, json=json)
+    verify_files(inputs, models=models or [], jobs=jobs, json=json)
+
+
+@app.command()
+def train(
+    inputs: Inputs,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="File for the model.", metavar="FILE.mcm")
+    ],
+    codec: Annotated[
+        str | None,
+        typer.Option("--codec", help="Codec that is to learn; else that of compress."),
+    ] = None,
+    force: Force = False,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Learn a model from clips, for compressing others like these; see compress --model."""
+    from mocapress.cli.models import train_model
+
+    train_model(inputs, output, codec, force=force, json=json)
 
 
 @app.command()
 def info(
-    inputs: Inputs, asf: Asf = None, jobs: Jobs = 1, json: Json = False, debug: Debug = False
+    inputs: Inputs,
+    asf: Asf = None,
+    models: Models = None,
+    jobs: Jobs = 1,
+    json: Json = False,
+    debug: Debug = False,
 ) -> None:
-    """Say what is in motion files and .mcz files."""
+    """Say what is in motion files, .mcz files and models."""
     from mocapress.cli.info import show_info
 
-    show_info(inputs, asf=asf, jobs=jobs, json=json)
+    show_info(inputs, asf=asf, models=models or [], jobs=jobs, json=json)
 
 
 class Target(StrEnum):
@@ -126,6 +185,7 @@ def convert(
         Target | None, typer.Option("--to", help="Format; else what the output's name says.")
     ] = None,
     asf: Asf = None,
+    models: Models = None,
     fps: Annotated[
         float | None,
         typer.Option("--fps", help="Frames per second of an AMC, which does not say.", min=1e-3),
@@ -139,7 +199,15 @@ def convert(
     from mocapress.cli.convert import convert_files
 
     convert_files(
-        inputs, output, to and to.value, asf=asf, fps=fps, jobs=jobs, force=force, json=json
+        inputs,
+        output,
+        to and to.value,
+        asf=asf,
+        models=models or [],
+        fps=fps,
+        jobs=jobs,
+        force=force,
+        json=json,
     )
 
 

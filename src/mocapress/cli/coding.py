@@ -7,6 +7,7 @@ from typing import Any
 
 from mocapress import api, codecs
 from mocapress.cli.batch import STREAM, Job, Outcome, contents, find, run, target, usage
+from mocapress.cli.models import open_model, open_models, places_for
 from mocapress.errors import ParameterError
 from mocapress.files import write_whole
 from mocapress.formats.files import find_asf, sniff
@@ -19,6 +20,8 @@ def compress_files(
     output: Path | None,
     codec: str,
     *,
+    level: int | None,
+    model: Path | None,
     asf: Path | None,
     embed_asf: bool,
     jobs: int,
@@ -26,8 +29,13 @@ def compress_files(
     json: bool,
 ) -> None:
     """Compress files."""
+    learned = open_model(model) if model else None
     try:
         made = codecs.codec(codec)
+        if level is not None:
+            made = codecs.with_level(made, level)
+        if learned is not None:
+            codecs.learner(made, learned)
     except ParameterError as error:
         usage(f"--codec: {error}")
     files = find(inputs, _MOTION)
@@ -44,6 +52,7 @@ def compress_files(
             name=str(job.source) if job.source != STREAM else "",
             asf_data=beside.read_bytes() if beside else b"",
             embed_asf=embed_asf,
+            model=learned,
         )
         _put(place, compressed.blob, force=force)
         return {
@@ -58,27 +67,34 @@ def compress_files(
 
 
 def decompress_files(
-    inputs: Sequence[Path], output: Path | None, *, jobs: int, force: bool, json: bool
+    inputs: Sequence[Path],
+    output: Path | None,
+    *,
+    models: Sequence[Path],
+    jobs: int,
+    force: bool,
+    json: bool,
 ) -> None:
     """Restore files."""
-    files = find(inputs, (".mcz",))
+    files, given = find(inputs, (".mcz",)), open_models(models)
 
     def work(job: Job) -> dict[str, Any]:
         place = target(job, output, _original_name, many=len(files) > 1)
         blob = contents(job.source)
-        data = api.decompress(blob)
+        data = api.decompress(blob, models=places_for(job, given))
         _put(place, data, force=force)
         return {"output": str(place), "raw_bytes": len(data), "compressed_bytes": len(blob)}
 
     run(files, work, threads=jobs, json=json, show=_show_sizes)
 
 
-def verify_files(inputs: Sequence[Path], *, jobs: int, json: bool) -> None:
+def verify_files(inputs: Sequence[Path], *, models: Sequence[Path], jobs: int, json: bool) -> None:
     """Decode files and compare digests."""
-    files = find(inputs, (".mcz",))
+    files, given = find(inputs, (".mcz",)), open_models(models)
 
     def work(job: Job) -> dict[str, Any]:
-        return {"raw_bytes": len(api.decompress(contents(job.source))), "ok": True}
+        data = api.decompress(contents(job.source), models=places_for(job, given))
+        return {"raw_bytes": len(data), "ok": True}
 
     def show(outcomes: list[Outcome]) -> None:
         for outcome in outcomes:

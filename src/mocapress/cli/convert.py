@@ -7,9 +7,11 @@ from typing import Any
 
 from mocapress import api, convert
 from mocapress.cli.batch import STREAM, Job, Outcome, find, run, target, usage
+from mocapress.cli.models import open_models
 from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.formats.files import format_clip
 from mocapress.model import Clip
+from mocapress.trained import Place
 
 
 def convert_files(
@@ -18,6 +20,7 @@ def convert_files(
     to: str | None,
     *,
     asf: Path | None,
+    models: Sequence[Path],
     fps: float | None,
     jobs: int,
     force: bool,
@@ -26,6 +29,7 @@ def convert_files(
     """Convert files; ``.mcz`` files are taken, too."""
     to = to or _kind_of(output)
     files = find(inputs, (".amc",) if to == "bvh" else (".bvh",))
+    given = open_models(models)
 
     def rename(source: Path) -> Path:
         stem = source.with_suffix("") if source.suffix.lower() == ".mcz" else source
@@ -33,7 +37,7 @@ def convert_files(
 
     def work(job: Job) -> dict[str, Any]:
         place = target(job, output, rename, many=len(files) > 1)
-        clip = _read(job.source, asf)
+        clip = _read(job.source, asf, given)
         warning = None
         if to == "bvh":
             if clip.frame_time is None and fps is None:
@@ -58,11 +62,13 @@ def _kind_of(output: Path | None) -> str:
     return kind
 
 
-def _read(source: Path, asf: Path | None) -> Clip:
+def _read(source: Path, asf: Path | None, models: Sequence[Place]) -> Clip:
     if source == STREAM:
         raise ParameterError("convert reads files, not stdin")
-    compressed = source.suffix.lower() == ".mcz"
-    clip = (api.load if compressed else api.read)(source, asf_path=asf)
+    if source.suffix.lower() == ".mcz":
+        clip = api.load(source, asf_path=asf, models=models)
+    else:
+        clip = api.read(source, asf_path=asf)
     if clip.skeleton is None:
         raise UnsupportedError(
             "no skeleton", file=str(source), expected="an ASF beside it, or --asf"

@@ -6,19 +6,27 @@ from typing import Any
 
 from mocapress import describe
 from mocapress.cli.batch import STREAM, Job, Outcome, contents, find, run
-from mocapress.container.mcz import MAGIC
+from mocapress.cli.models import open_models, places_for
+from mocapress.container import mcm, mcz
 from mocapress.formats.files import find_asf
+from mocapress.trained import load_model
 
 
-def show_info(inputs: Sequence[Path], *, asf: Path | None, jobs: int, json: bool) -> None:
-    """Describe motion files and ``.mcz`` files."""
-    files = find(inputs, (".amc", ".bvh", ".asf", ".mcz"))
+def show_info(
+    inputs: Sequence[Path], *, asf: Path | None, models: Sequence[Path], jobs: int, json: bool
+) -> None:
+    """Describe motion files, ``.mcz`` files and models."""
+    files = find(inputs, (".amc", ".bvh", ".asf", ".mcz", ".mcm"))
+    given = open_models(models)
 
     def work(job: Job) -> dict[str, Any]:
         data = contents(job.source)
-        if data[:4] == MAGIC:
+        if data[:4] == mcz.MAGIC:
             beside = find_asf(job.source.with_suffix("")) if job.source != STREAM else None
-            return describe.describe_mcz(data, asf_path=asf or beside)
+            models = places_for(job, given)
+            return describe.describe_mcz(data, asf_path=asf or beside, models=models)
+        if data[:4] == mcm.MAGIC:
+            return describe.describe_model(load_model(data), len(data))
         return describe.describe_file(job.source, asf_path=asf)
 
     def show(outcomes: list[Outcome]) -> None:

@@ -8,10 +8,27 @@ import dataclasses
 import importlib
 from typing import Any, get_type_hints
 
-from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
+from mocapress.codecs.contract import Chunk, Codec, Encoded, Model, Trainable
 from mocapress.errors import ParameterError, UnsupportedError
 
-__all__ = ["Chunk", "Codec", "Encoded", "Model", "codec", "codec_ids", "spec"]
+__all__ = [
+    "DEFAULT_CODEC",
+    "LEVELS",
+    "Chunk",
+    "Codec",
+    "Encoded",
+    "Model",
+    "codec",
+    "codec_ids",
+    "has_level",
+    "learner",
+    "spec",
+    "with_level",
+]
+
+DEFAULT_CODEC = "app"
+LEVELS = range(1, 10)
+"""From the fastest to the strongest, of codecs with the parameter ``level``."""
 
 # id -> module and class; imported when first asked for, so that one codec does not pay for others.
 _REGISTRY: dict[str, tuple[str, str]] = {
@@ -64,6 +81,44 @@ def spec(made: Codec) -> str:
         if given[field.name] != field.default
     ]
     return f"{made.id}:{','.join(changed)}" if changed else made.id
+
+
+def learner(made: Codec, model: Model | None = None) -> Trainable:
+    """Give the codec as one that learns, and check that a model is its own.
+
+    Raises
+    ------
+    ParameterError
+        When it does not learn, or the model is another codec's.
+
+    """
+    if not isinstance(made, Trainable):
+        raise ParameterError(f"codec {made.id} takes no model")
+    if model is not None and model.codec != made.id:
+        raise ParameterError("model of another codec", expected=made.id, found=repr(model.codec))
+    return made
+
+
+def has_level(made: Codec) -> bool:
+    """Tell whether a codec has the parameter ``level``."""
+    return "level" in {field.name for field in dataclasses.fields(made)}  # type: ignore[arg-type]
+
+
+def with_level(made: Codec, level: int) -> Codec:
+    """Give the codec at a level, 1 to 9.
+
+    Raises
+    ------
+    ParameterError
+        When the codec has no levels, or not this one.
+
+    """
+    if not has_level(made):
+        raise ParameterError(f"codec {made.id} has no levels")
+    if level not in LEVELS:
+        raise ParameterError("level", expected="1 to 9", found=repr(level))
+    leveled: Codec = dataclasses.replace(made, level=level)  # type: ignore[type-var]
+    return leveled
 
 
 def _parse(kind: Any, text: str, where: str) -> Any:

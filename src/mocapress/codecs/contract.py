@@ -1,12 +1,14 @@
 """What a codec is: the contract that every codec keeps and every caller relies on."""
 
+import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapress.binary import Writer
 from mocapress.model import Clip, Column
 
 
@@ -38,7 +40,16 @@ class Model:
     """What a codec learned from other clips, as bytes; named by its hash in files that need it."""
 
     codec: str
+    """Id of the codec."""
     payload: bytes
+
+    @property
+    def digest(self) -> bytes:
+        """What files name the model by: SHA-256 of id and payload, their lengths before them."""
+        named = Writer()
+        named.bytes(self.codec.encode())
+        named.bytes(self.payload)
+        return hashlib.sha256(named.data).digest()
 
 
 class Codec(Protocol):
@@ -52,7 +63,16 @@ class Codec(Protocol):
     lossless: ClassVar[bool]
 
     def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:
-        """Code a clip; ``(F, C)`` values, any float64 including NaN, infinities and -0."""
+        """Code a clip; ``(F, C)`` values, any float64 including NaN, infinities and -0.
+
+        A model that was learned from other columns than the clip's costs ratio, not correctness.
+
+        Raises
+        ------
+        CorruptError
+            When the model's payload does not follow the codec's format.
+
+        """
         ...
 
     def decode(
@@ -68,18 +88,23 @@ class Codec(Protocol):
         Raises
         ------
         CorruptError
-            When header or payload do not follow the codec's format. Never anything else, and
-            never with more memory than a small multiple of (frames x columns x 8) bytes.
+            When header, payload or model do not follow the codec's format, or the model with
+            which the clip was coded is missing. Never anything else, and never with more memory
+            than a small multiple of (frames x columns x 8) bytes.
 
         """
         ...
 
 
+@runtime_checkable
 class Trainable(Protocol):
-    """A codec that learns from other clips."""
+    """A codec that learns from other clips. Others ignore the models that they are given."""
 
     def train(self, clips: Iterable[Clip]) -> Model:
-        """Learn a model from clips."""
+        """Learn a model from clips, which are gone through once.
+
+        The same model on every run and every machine.
+        """
         ...
 
 

@@ -7,7 +7,8 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from mocapress.binary import Reader, Writer
-from mocapress.errors import CorruptError, UnsupportedError
+from mocapress.container.sections import read_magic, read_section, section
+from mocapress.errors import CorruptError
 
 MAGIC = b"\x89MCZ"
 VERSION = 1
@@ -126,12 +127,12 @@ def pack_file(
         index.integer(len(payload))
         index.data.append(restart)
         index.data += zlib.crc32(payload).to_bytes(4, "little")
-    parts = [MAGIC, bytes([VERSION]), _section(_HEADER, bytes(header.data))]
+    parts = [MAGIC, bytes([VERSION]), section(_HEADER, bytes(header.data))]
     if layout:
-        parts.append(_section(_LAYOUT, layout))
+        parts.append(section(_LAYOUT, layout))
     if skeleton:
-        parts.append(_section(_SKELETON, skeleton))
-    parts.append(_section(_INDEX, bytes(index.data)))
+        parts.append(section(_SKELETON, skeleton))
+    parts.append(section(_INDEX, bytes(index.data)))
     return b"".join(parts + [payload for _, _, payload in payloads])
 
 
@@ -148,18 +149,10 @@ def parse(data: bytes | memoryview) -> Mcz:
     """
     data = memoryview(data)
     reader = Reader(data, "file")
-    magic = bytes(data[:4])
-    if magic != MAGIC:
-        raise CorruptError("not an .mcz file", offset=0, expected=MAGIC.hex(), found=magic.hex())
-    reader.raw(4)
-    version = reader.raw(1)[0]
-    if version != VERSION:
-        raise UnsupportedError(
-            "version of the file", offset=4, expected=str(VERSION), found=str(version)
-        )
+    read_magic(reader, MAGIC, VERSION, ".mcz")
     sections: dict[int, bytes] = {}
     while _INDEX not in sections:
-        number, content = _read_section(reader)
+        number, content = read_section(reader, _INDEX)
         if number <= max(sections, default=0):
             raise reader.fail(f"section {number} in the wrong place")
         sections[number] = content
@@ -179,31 +172,6 @@ def parse(data: bytes | memoryview) -> Mcz:
     if mcz.size > 2**28 + 2**14 * len(data):
         raise CorruptError(f"{mcz.size} bytes announced in a file of {len(data)}")
     return mcz
-
-
-def _section(number: int, content: bytes) -> bytes:
-    writer = Writer()
-    writer.integer(number)
-    writer.bytes(content)
-    return bytes(writer.data) + zlib.crc32(writer.data).to_bytes(4, "little")
-
-
-def _read_section(reader: Reader) -> tuple[int, bytes]:
-    start = reader.position
-    number = reader.raw(1)[0]
-    if not _HEADER <= number <= _INDEX:
-        raise reader.fail(f"section {number} is not known")
-    content = reader.bytes()
-    found = zlib.crc32(reader.data[start : reader.position])
-    expected = int.from_bytes(reader.raw(4), "little")
-    if found != expected:
-        raise CorruptError(
-            f"section {number}: wrong checksum",
-            offset=start,
-            expected=f"{expected:08x}",
-            found=f"{found:08x}",
-        )
-    return number, content
 
 
 def _read_header(sections: dict[int, bytes], data: memoryview, begin: int) -> Mcz:
