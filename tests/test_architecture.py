@@ -59,14 +59,14 @@ def test_every_box_has_its_row() -> None:
 
 
 def test_importing_mocapress_loads_no_numpy_and_no_extras() -> None:
-    heavy = {"numpy", "scipy", "typer", "rich", "matplotlib", "zstandard", "brotli"}
+    heavy = {"numpy", "scipy", "typer", "rich", "matplotlib", "zstandard", "brotli", "pcodec"}
     code = f"import sys, mocapress; print(sorted({heavy!r} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 
 
 def test_commands_load_no_extras(tmp_path: Path) -> None:
-    extras = {"matplotlib", "zstandard", "brotli", "pyppmd"}
+    extras = {"matplotlib", "zstandard", "brotli", "pcodec", "fpzip", "zfpy"}
     code = (
         "import sys\nfrom mocapress import api\n"
         f"api.compress(b'1 2 3'); print(sorted({extras!r} & set(sys.modules)))"

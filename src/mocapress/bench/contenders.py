@@ -1,4 +1,4 @@
-"""Who is compared: codecs on the numbers of a clip, and general-purpose tools on its file."""
+"""Who is compared: codecs on a clip, compressors of numbers on its matrix, tools on its file."""
 
 import bz2
 import gzip
@@ -8,15 +8,21 @@ import subprocess
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from mocapress import codecs
+from mocapress.bench import rivals
 from mocapress.bench.baselines import Parallelogram, PreviousFrame
 from mocapress.bench.dct import Dct
+from mocapress.bench.rivals import Rival
 from mocapress.codecs import Codec
+from mocapress.errors import ParameterError
 
+T = TypeVar("T")
+_LEVELS = (1, 6, 9)
 Transform = Callable[[bytes], bytes]
 
 
@@ -28,10 +34,55 @@ class Tool:
     decompress: Transform
 
 
-def codec_contenders() -> dict[str, Codec]:
-    """Give all lossless codecs with their defaults, APP's other preset, and the paper's rivals."""
-    found = {name: codecs.codec(name) for name in codecs.codec_ids()}
-    found = {name: made for name, made in found.items() if made.lossless}
+Contender = Codec | Rival | Tool
+
+
+def contenders(only: str = "") -> tuple[dict[str, Contender], list[str]]:
+    """Give those that were asked for, and the names of those that are not installed.
+
+    Parameters
+    ----------
+    only
+        Names, or codecs as text (``app:t=10``), with commas between; all where empty.
+
+    Raises
+    ------
+    ParameterError
+        When one is not known.
+
+    """
+    numeric, no_rivals = _installed(_RIVALS)
+    tools, no_tools = _installed(_TOOLS)
+    found: dict[str, Contender] = {**_codec_contenders(), **numeric, **tools}
+    missing = [*no_rivals, *no_tools]
+    if not only:
+        return found, missing
+    chosen: dict[str, Contender] = {}
+    for name in map(str.strip, only.split(",")):
+        if name in found:
+            chosen[name] = found[name]
+        elif name not in missing:
+            chosen[name] = _codec_of(name, [*found, *missing])
+    return chosen, [name for name in missing if name in only.split(",")]
+
+
+def _codec_of(name: str, known: list[str]) -> Codec:
+    try:
+        return codecs.codec(name)
+    except ParameterError as error:
+        expected = f"codecs, or some of {', '.join(known)}"
+        raise ParameterError("--only", expected=expected, found=name) from error
+
+
+def _codec_contenders() -> dict[str, Codec]:
+    """Give all lossless codecs, each level that is compared, and the rivals of APP's paper."""
+    found: dict[str, Codec] = {}
+    for name in codecs.codec_ids():
+        made = codecs.codec(name)
+        if made.lossless and codecs.has_level(made):
+            found |= {f"{name}:level={n}": codecs.with_level(made, n) for n in _LEVELS}
+        elif made.lossless:
+            found[name] = made
     found["app:mantissa_limit=53"] = codecs.codec("app:mantissa_limit=53")
     found["non-alpha PP"] = Parallelogram()
     found["MPEG-4 LP"] = PreviousFrame()
@@ -41,21 +92,12 @@ def codec_contenders() -> dict[str, Codec]:
     return found
 
 
-def tool_contenders() -> tuple[dict[str, Tool], list[str]]:
-    """Give the tools that are here, and the names of those that are not installed."""
-    made: dict[str, Callable[[], Tool]] = {
-        "gzip -9": lambda: Tool(lambda data: gzip.compress(data, 9, mtime=0), gzip.decompress),
-        "bzip2 -9": lambda: Tool(bz2.compress, bz2.decompress),
-        "xz -9e": lambda: Tool(
-            lambda data: lzma.compress(data, preset=9 | lzma.PRESET_EXTREME), lzma.decompress
-        ),
-        "zstd -22": _zstd,
-        "brotli 11": _brotli,
-        "7z PPMd": _ppmd,
-    }
-    found: dict[str, Tool] = {}
+def _installed(
+    makers: dict[str, Callable[[], T]],
+) -> tuple[dict[str, T], list[str]]:
+    found: dict[str, T] = {}
     missing = []
-    for name, make in made.items():
+    for name, make in makers.items():
         try:
             found[name] = make()
         except ImportError:
@@ -101,5 +143,45 @@ def _ppmd() -> Tool:
     return Tool(compress, decompress)
 
 
+def _zpaq() -> Tool:
+    """Zpaq, the archiver, at its strongest; only where that is installed."""
+    command = shutil.which("zpaq")
+    if command is None:
+        raise ImportError
+
+    def compress(data: bytes) -> bytes:
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "clip").write_bytes(data)
+            _run([command, "add", "clip.zpaq", "clip", "-m5", "-t1"], folder)
+            return (Path(folder) / "clip.zpaq").read_bytes()
+
+    def decompress(data: bytes) -> bytes:
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "clip.zpaq").write_bytes(data)
+            _run([command, "extract", "clip.zpaq", "-to", "back", "-t1"], folder)
+            return (Path(folder) / "back/clip").read_bytes()
+
+    return Tool(compress, decompress)
+
+
 def _run(command: list[str], folder: str) -> bytes:
     return subprocess.run(command, cwd=folder, capture_output=True, check=True).stdout  # noqa: S603
+
+
+_TOOLS: dict[str, Callable[[], Tool]] = {
+    "gzip -9": lambda: Tool(lambda data: gzip.compress(data, 9, mtime=0), gzip.decompress),
+    "bzip2 -9": lambda: Tool(bz2.compress, bz2.decompress),
+    "xz -9e": lambda: Tool(
+        lambda data: lzma.compress(data, preset=9 | lzma.PRESET_EXTREME), lzma.decompress
+    ),
+    "zstd -22": _zstd,
+    "brotli 11": _brotli,
+    "7z PPMd": _ppmd,
+    "zpaq -m5": _zpaq,
+}
+_RIVALS: dict[str, Callable[[], Rival]] = {
+    "pcodec float64": partial(rivals.pcodec, grid=False),
+    "pcodec grid": partial(rivals.pcodec, grid=True),
+    "fpzip": rivals.fpzip,
+    "zfp": rivals.zfp,
+}

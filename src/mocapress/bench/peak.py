@@ -1,10 +1,12 @@
 """Prints the peak memory of this process, MB, before and after it codes a file."""
 
 import re
+import resource
 import sys
 from pathlib import Path
 
-from mocapress.bench.contenders import codec_contenders, tool_contenders
+from mocapress.bench.contenders import Tool, contenders
+from mocapress.bench.rivals import Rival
 from mocapress.formats.files import sniff, split
 
 
@@ -15,19 +17,28 @@ def _peak() -> float:
     return int(found[1]) / 1024 if found else 0.0
 
 
-def main(path: Path, contender: str) -> None:
+def _peak_of_commands() -> float:
+    """Give that of the largest command that was run, or of this process then, if that is more."""
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+
+
+def main(path: Path, name: str) -> None:
     """Code one file with one contender, both ways."""
-    codecs, (tools, _) = codec_contenders(), tool_contenders()
+    (contender,) = contenders(name)[0].values()
     data = path.read_bytes()
     before = _peak()
-    if contender in codecs:
-        made = codecs[contender]
-        clip, layout, _ = split(data, sniff(data, path.name) or "")
-        encoded = made.encode(clip)
-        layout.join(made.decode(encoded.header, encoded.chunks, clip.columns))
+    if isinstance(contender, Tool):
+        contender.decompress(contender.compress(data))
     else:
-        tools[contender].decompress(tools[contender].compress(data))
-    print(before, _peak())
+        clip, layout, _ = split(data, sniff(data, path.name) or "")
+        if isinstance(contender, Rival):
+            packed = contender.compress(clip.values)
+            values = contender.decompress(packed, (clip.frames, clip.channels))
+        else:
+            encoded = contender.encode(clip)
+            values = contender.decode(encoded.header, encoded.chunks, clip.columns)
+        layout.join(values)
+    print(before, _peak() + _peak_of_commands())
 
 
 if __name__ == "__main__":

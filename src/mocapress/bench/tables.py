@@ -15,17 +15,18 @@ def markdown(header: list[str], rows: Iterable[list[str]]) -> str:
 
 
 def totals(rows: list[Row], memory: dict[str, float] | None = None) -> str:
-    """Sum over all clips, one line per contender, strongest first."""
+    """Sum over all clips, one line per contender, strongest first; models are counted."""
     lines = []
+    models = any(row["model_bytes"] for row in rows)
     for codec, own in sorted(grouped(rows, "codec").items(), key=lambda item: -_ratio(item[1])):
         samples = sum(row["frames"] * row["channels"] for row in own)
-        raw, small = sum_of(own, "raw_bytes"), sum_of(own, "compressed_bytes")
-        frames = sum_of(own, "frames")
+        raw, small, frames = sum_of(own, "raw_bytes"), stored(own), sum_of(own, "frames")
         lines.append(
             [
-                codec,
+                marked(codec, own),
                 f"{raw:,.0f}",
                 f"{small:,.0f}",
+                *([f"{sum(row['model_bytes'] for row in own):,}"] if models else []),
                 f"{raw / small:.3f}",
                 f"{8 * small / samples:.2f}",
                 f"{_weighted(own, 'encode_us_per_frame') / frames:.2f}",
@@ -36,9 +37,10 @@ def totals(rows: list[Row], memory: dict[str, float] | None = None) -> str:
                 f"{sum(row['exact'] for row in own)}/{len(own)}",
             ]
         )
-    header = ["codec", "raw bytes", "compressed", "ratio", "bits/sample", "encode µs/frame"]
-    header += ["decode µs/frame", "compress MB/s", "restore MB/s", "peak MB", "exact"]
-    return markdown(header, lines)
+    header = ["codec", "raw bytes", "compressed", *(["of it models"] if models else []), "ratio"]
+    header += ["bits/sample", "encode µs/frame", "decode µs/frame", "compress MB/s"]
+    header += ["restore MB/s", "peak MB", "exact"]
+    return markdown(header, lines) + _footnote(rows)
 
 
 def by_group(rows: list[Row]) -> str:
@@ -46,27 +48,46 @@ def by_group(rows: list[Row]) -> str:
     groups: dict[str, list[Row]] = defaultdict(list)
     for row in rows:
         groups[str(PurePath(row["clip"]).parent)].append(row)
-    codecs = list(grouped(rows, "codec"))
+    codecs = grouped(rows, "codec")
     lines = []
     for group, own in [*groups.items(), ("all", rows)]:
         by_codec = grouped(own, "codec")
-        first = by_codec[codecs[0]]
+        first = by_codec[next(iter(codecs))]
         lines.append(
             [group, str(len(first)), f"{sum_of(first, 'frames'):.0f}"]
             + [f"{_ratio(by_codec[codec]):.3f}" for codec in codecs]
         )
-    return markdown(["clips of", "clips", "frames", *codecs], lines)
+    names = [marked(codec, own) for codec, own in codecs.items()]
+    return markdown(["clips of", "clips", "frames", *names], lines) + _footnote(rows)
 
 
 def by_clip(rows: list[Row]) -> str:
-    """Give ratios per clip, one column per contender."""
-    codecs = list(grouped(rows, "codec"))
+    """Give ratios per clip, one column per contender; models are not counted."""
+    names = [marked(codec, own) for codec, own in grouped(rows, "codec").items()]
     lines = [
         [clip, f"{own[0]['frames']}", f"{own[0]['raw_bytes']:,}"]
         + [f"{row['raw_bytes'] / row['compressed_bytes']:.3f}" for row in own]
         for clip, own in grouped(rows, "clip").items()
     ]
-    return markdown(["clip", "frames", "raw bytes", *codecs], lines)
+    return markdown(["clip", "frames", "raw bytes", *names], lines)
+
+
+def marked(codec: str, rows: list[Row]) -> str:
+    """Give a contender's name, with a mark where only the values are counted."""
+    return f"{codec} †" if rows[0]["counts"] == "values" else codec
+
+
+def stored(rows: list[Row]) -> float:
+    """Add up what must be kept to restore the files: compressed files and models."""
+    return sum_of(rows, "compressed_bytes") + float(sum(row["model_bytes"] for row in rows))
+
+
+def _footnote(rows: list[Row]) -> str:
+    if all(row["counts"] == "file" for row in rows):
+        return ""
+    return (
+        "\n† The values alone: the text around them is not counted, in this contender's favour.\n"
+    )
 
 
 def grouped(rows: list[Row], key: str) -> dict[str, list[Row]]:
@@ -83,7 +104,7 @@ def sum_of(rows: list[Row], key: str) -> float:
 
 
 def _ratio(rows: list[Row]) -> float:
-    return sum_of(rows, "raw_bytes") / sum_of(rows, "compressed_bytes")
+    return sum_of(rows, "raw_bytes") / stored(rows)
 
 
 def _weighted(rows: list[Row], key: str) -> float:

@@ -226,8 +226,26 @@ def bench_lossless(
         Path | None, typer.Option("--plots", help="Draw the figures here.", metavar="FOLDER")
     ] = None,
     only: Annotated[
-        str, typer.Option("--only", help="Codecs and tools, with commas between; else all.")
+        str,
+        typer.Option("--only", help="Codecs, with a parameter or none, and tools; commas between."),
     ] = "",
+    folds: Annotated[
+        int | None,
+        typer.Option(
+            "--folds",
+            min=2,
+            help="Measure codecs that learn with models, too: folders are dealt to N folds, each "
+            "coded with a model of the others.",
+            metavar="N",
+        ),
+    ] = None,
+    train_frames: Annotated[
+        int, typer.Option("--train-frames", min=1, help="Frames that each such model learns from.")
+    ] = 40_000,
+    model: Annotated[
+        Path | None,
+        typer.Option("--model", help="Measure with this model, too.", metavar="FILE.mcm"),
+    ] = None,
     repeat: Annotated[int, typer.Option("--repeat", min=1, help="Take the best of N times.")] = 1,
     force: Force = False,
     debug: Debug = False,
@@ -236,7 +254,16 @@ def bench_lossless(
     from mocapress.cli.bench import bench_lossless_files
 
     bench_lossless_files(
-        corpus, json=json, markdown=markdown, plots=plots, only=only, repeat=repeat, force=force
+        corpus,
+        json=json,
+        markdown=markdown,
+        plots=plots,
+        only=only,
+        folds=folds,
+        model=model,
+        train_frames=train_frames,
+        repeat=repeat,
+        force=force,
     )
 
 

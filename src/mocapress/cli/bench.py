@@ -8,9 +8,9 @@ from typing import Any
 import typer
 
 from mocapress import api, codecs
-from mocapress.bench import app_figures, lossless, pareto, tables
+from mocapress.bench import app_figures, learning, lossless, pareto, tables
 from mocapress.cli.batch import usage
-from mocapress.errors import MocapressError, ParameterError
+from mocapress.errors import CorruptError, MocapressError, ParameterError
 from mocapress.files import write_whole
 
 _FEW = 10
@@ -23,6 +23,9 @@ def bench_lossless_files(
     markdown: Path | None,
     plots: Path | None,
     only: str,
+    folds: int | None,
+    model: Path | None,
+    train_frames: int,
     repeat: int,
     force: bool,
 ) -> None:
@@ -33,17 +36,23 @@ def bench_lossless_files(
     if not paths:
         usage(f"no AMC or BVH files in {folder}")
     try:
+        learned = learning.given(paths, only, model) if model else []
+        if folds:
+            learned += learning.cross_validated(
+                paths, only, folds=folds, most_frames=train_frames, progress=_progress(0)
+            )
         rows, notes = lossless.measure(
-            paths, root, only=only, repeat=repeat, progress=_progress(len(paths))
+            paths, root, only=only, learned=learned, repeat=repeat, progress=_progress(len(paths))
         )
-    except ParameterError as error:
+    except (ParameterError, CorruptError, FileNotFoundError) as error:
         usage(str(error))
     for note in notes:
         typer.echo(f"mocapress: {note}", err=True)
     if not rows:
         usage("none of the clips can be read")
     largest = max(paths, key=lambda path: path.stat().st_size)
-    names = list(dict.fromkeys(row["codec"] for row in rows))
+    with_models = {one.name for one in learned}
+    names = [name for name in tables.grouped(rows, "codec") if name not in with_models]
     memory = {name: lossless.peak_memory(largest, name)["peak_mb"] for name in names}
     parts = [tables.totals(rows, memory), tables.by_group(rows)]
     if len(paths) <= _FEW:
