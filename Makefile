@@ -17,7 +17,7 @@ test: check sanitize tests
 check: $(VENV)/.built
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
-	$(BIN)/clang-format --dry-run --Werror core/*.cpp core/*.hpp core/fuzz/*.cpp
+	$(BIN)/clang-format --dry-run --Werror core/*.cpp core/*.hpp core/*/*.cpp core/*/*.hpp
 	$(BIN)/mypy
 
 tests: $(VENV)/.built corpus
@@ -37,6 +37,27 @@ sanitize: $(fuzzers) $(VENV)/.built
 build/fuzz/%: core/fuzz/fuzz_%.cpp core/fuzz/driver.cpp $(kernels) $(wildcard core/*.hpp)
 	@mkdir -p build/fuzz
 	$(CXX) $(SANITIZE) $< core/fuzz/driver.cpp $(kernels) -o $@
+
+# A codec's kernels built in other ways, build/check/WAY/CODEC: each must print what
+# tests/golden/kernels_CODEC.txt says. MOCAPRESS_ONE_TARGET turns run-time dispatch off, so that a
+# way is what its flags say.
+EXACT := -std=c++20 -ffp-contract=off -Wall -Wextra -Icore
+ONE := -DMOCAPRESS_ONE_TARGET
+check_usual := $(CXX) -O3 $(EXACT)
+check_o0 := $(CXX) -O0 $(EXACT) $(ONE)
+check_baseline := $(CXX) -O3 -march=x86-64 $(EXACT) $(ONE)
+check_avx2 := $(CXX) -O3 -mavx2 -mfma $(EXACT) $(ONE)
+check_avx512 := $(CXX) -O3 -march=x86-64-v4 $(EXACT) $(ONE)
+check_clang := clang++ -O3 -mavx2 -mfma $(EXACT) $(ONE)
+check_clang_o0 := clang++ -O0 $(EXACT) $(ONE)
+check_aarch64 := aarch64-linux-gnu-g++ -O3 -static $(EXACT) $(ONE)
+# Not allowed; that it prints something else shows that the check sees it.
+check_contracted := $(CXX) -O3 -mavx2 -mfma $(EXACT) $(ONE) -ffp-contract=fast
+
+build/check/%: $(wildcard core/check/*) $(kernels) $(wildcard core/*.hpp)
+	@mkdir -p $(@D)
+	$(check_$(*D)) core/check/check_$(*F).cpp $(wildcard core/$(*F).cpp core/$(*F)_*.cpp) \
+	    core/snap.cpp -o $@
 
 bench: $(VENV)/.built corpus
 	$(BIN)/mocapress bench lossless $(if $(wildcard corpus/.version),corpus/amc/cmu)

@@ -8,6 +8,7 @@ import dataclasses
 import tracemalloc
 
 import numpy as np
+import payloads
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -141,6 +142,12 @@ def test_decoding_can_begin_at_every_restart(name: str) -> None:
 def test_the_same_bytes_on_every_run(name: str) -> None:
     clip = clip_of(on_grid(smooth(600, 9), FORMATS[1]), FORMATS[1])
     assert codecs.codec(name).encode(clip) == codecs.codec(name).encode(clip)
+
+
+@pytest.mark.parametrize("spec", payloads.specs())
+def test_the_same_bytes_on_every_machine(spec: str) -> None:
+    """The digests were made once; ``tests/golden/make.py`` makes those of new codecs."""
+    assert payloads.digests(spec) == payloads.golden(spec).read_bytes()
 
 
 def decode_broken(

@@ -1,11 +1,19 @@
 """Make golden files; never overwrites one."""
 
 import math
+import subprocess
+import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import mocapress as mp
+from mocapress.trained import model_bytes
 
 HERE = Path(__file__).parent
+sys.path.append(str(HERE.parent / "codecs"))
+import payloads  # noqa: E402
+
 FRAMES = 240
 BVH = """HIERARCHY
 ROOT Hips
@@ -59,14 +67,30 @@ FILES = {
     "v1_bytes.bin": (bytes(range(256)) * 3, "app"),
 }
 
+
+def put(name: str, make: Callable[[], bytes]) -> None:
+    """Write a file that is not there yet."""
+    target = HERE / name
+    if not target.exists():
+        target.write_bytes(make())
+        print(target)
+
+
+def kernels(codec: str) -> bytes:
+    """Give what the check program of a codec prints (tests/core/test_determinism.py)."""
+    program = f"build/check/usual/{codec}"
+    subprocess.run(["make", "-s", program], cwd=HERE.parents[1], check=True)
+    return subprocess.run([HERE.parents[1] / program], check=True, capture_output=True).stdout
+
+
 if __name__ == "__main__":
     for name, (data, codec) in FILES.items():
-        target = HERE / f"{name}.mcz"
-        if not target.exists():
-            (HERE / name).write_bytes(data)
-            target.write_bytes(mp.compress(data, codec))
-            print(target)
-    model = HERE / "v1_learner.mcm"
-    if not model.exists():
-        mp.save_model(mp.Model("learner", bytes(range(100)) * 2), model)
-        print(model)
+        put(name, partial(bytes, data))
+        put(f"{name}.mcz", partial(mp.compress, data, codec))
+    learned = mp.Model("learner", bytes(range(100)) * 2)
+    put("v1_learner.mcm", partial(model_bytes, learned))
+    for program in sorted(HERE.parents[1].glob("core/check/check_*.cpp")):
+        codec = program.stem.removeprefix("check_")
+        put(f"kernels_{codec}.txt", partial(kernels, codec))
+    for spec in payloads.specs():
+        put(payloads.golden(spec).name, partial(payloads.digests, spec))

@@ -1,0 +1,86 @@
+"""A codec's kernels give the same bytes whatever compiler, optimiser or processor they run on.
+
+The check programs, core/check/check_CODEC.cpp, code made-up motion, decode it and print digests.
+Built as the package is, what they print is in tests/golden/; built otherwise, they must print that.
+"""
+
+import platform
+import shutil
+import subprocess
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+GOLDEN = ROOT / "tests/golden"
+CODECS = sorted(
+    path.stem.removeprefix("check_") for path in (ROOT / "core/check").glob("check_*.cpp")
+)
+
+
+class Way(NamedTuple):
+    """A way to build and run, of the Makefile's ``check_WAY``."""
+
+    name: str
+    compiler: str = ""
+    """Where it is not the usual one."""
+    features: frozenset[str] = frozenset()
+    """Of the processor, as /proc/cpuinfo has them."""
+    under: tuple[str, ...] = ()
+    """The emulator that runs it."""
+
+
+V4 = frozenset({"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"})
+FUSED = frozenset({"avx2", "fma"})
+WAYS = {
+    "as the package is built": Way("usual"),
+    "-O0": Way("o0"),
+    "-O3 for any x86-64": Way("baseline"),
+    "AVX2 and FMA": Way("avx2", features=FUSED),
+    "AVX-512": Way("avx512", features=V4),
+    "clang with AVX2 and FMA": Way("clang", "clang++", FUSED),
+    "clang -O0": Way("clang_o0", "clang++"),
+    "aarch64, emulated": Way("aarch64", "aarch64-linux-gnu-g++", under=("qemu-aarch64",)),
+    "as the package is built, on the oldest x86-64, emulated": Way(
+        "usual", under=("qemu-x86_64", "-cpu", "qemu64")
+    ),
+}
+
+
+def printed(codec: str, way: Way) -> str:
+    """Build a check program and give what it prints; skip what this machine cannot do."""
+    for command in (way.compiler, *way.under[:1]):
+        if command and not shutil.which(command):
+            pytest.skip(f"{command} is not installed")
+    if way.name not in ("usual", "o0", "clang_o0", "aarch64") and platform.machine() != "x86_64":
+        pytest.skip("for x86-64 only")
+    if missing := way.features - features():
+        pytest.skip(f"this processor has no {', '.join(sorted(missing))}")
+    program = f"build/check/{way.name}/{codec}"
+    subprocess.run(["make", "-s", program], cwd=ROOT, check=True, capture_output=True)
+    whole = [*way.under, str(ROOT / program)]
+    return subprocess.run(whole, capture_output=True, text=True, check=True).stdout
+
+
+def features() -> set[str]:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return set()
+    return {word for line in lines if line.startswith("flags") for word in line.split()}
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("codec", CODECS)
+def test_every_build_gives_the_same_bytes(codec: str, way: str) -> None:
+    expected = (GOLDEN / f"kernels_{codec}.txt").read_text()
+    assert "NOT RESTORED" not in expected
+    assert printed(codec, WAYS[way]) == expected
+
+
+@pytest.mark.parametrize("codec", CODECS)
+def test_the_check_sees_fused_multiply_adds(codec: str) -> None:
+    """What would go unseen here would prove nothing above."""
+    fused = printed(codec, Way("contracted", features=FUSED))
+    assert fused != (GOLDEN / f"kernels_{codec}.txt").read_text()
