@@ -90,7 +90,7 @@ def test_the_command_measures_models(
         assert result.exit_code == 0, result.output
         names = {row["codec"] for row in json.loads(rows.read_text())}
         assert names == {"learner:level=3", "learner:level=3 + model", "gzip -9"}
-        assert "of it models" in result.stdout
+        assert "of which models" in result.stdout
     result = CliRunner().invoke(app, [*words[:-1], "app", "--model", str(model)])
     assert result.exit_code == 2
     assert "expected learner among the codecs" in result.stderr

@@ -23,7 +23,7 @@ from mocapress.formats.number_formats import printed
 from mocapress.model import Clip, Column, Joint, NumberFormat, Skeleton
 from mocapress.model.number_format import NumberKind
 
-LOSSLESS = [name for name in codecs.codec_ids() if codecs.codec(name).lossless]
+LOSSLESS = payloads.specs()
 FORMATS = [
     None,
     NumberFormat(NumberKind.GENERAL, 6, exponent_digits=3),

@@ -8,6 +8,7 @@ import dataclasses
 import hashlib
 
 import numpy as np
+import payloads
 import pytest
 from learner import Learner
 from numpy.typing import NDArray
@@ -15,11 +16,12 @@ from test_contract import FORMATS, clip_of, on_grid, smooth
 
 from mocapress import codecs
 from mocapress.codecs import Codec, Model
+from mocapress.codecs.contract import Trainable
 from mocapress.errors import CorruptError, ParameterError
 from mocapress.model import Clip, NumberFormat
 
-LEARNERS = [name for name in codecs.codec_ids() if hasattr(codecs.codec(name), "train")]
-OTHERS = [name for name in codecs.codec_ids() if name not in LEARNERS]
+LEARNERS = [spec for spec in payloads.specs() if isinstance(codecs.codec(spec), Trainable)]
+OTHERS = [spec for spec in payloads.specs() if spec not in LEARNERS]
 DECIMAL = FORMATS[1]
 
 

@@ -37,7 +37,7 @@ def totals(rows: list[Row], memory: dict[str, float] | None = None) -> str:
                 f"{sum(row['exact'] for row in own)}/{len(own)}",
             ]
         )
-    header = ["codec", "raw bytes", "compressed", *(["of it models"] if models else []), "ratio"]
+    header = ["codec", "raw bytes", "compressed", *(["of which models"] if models else []), "ratio"]
     header += ["bits/sample", "encode µs/frame", "decode µs/frame", "compress MB/s"]
     header += ["restore MB/s", "peak MB", "exact"]
     return markdown(header, lines) + _footnote(rows)
