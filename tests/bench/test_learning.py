@@ -105,8 +105,16 @@ def test_three_levels_are_compared() -> None:
     ]
     (one,) = contenders("learner:level=2")[0].values()
     assert one == Learner(level=2)
+
+
+def test_contenders_are_chosen_by_name() -> None:
+    names = ["app", "app:t=10,mantissa_limit=53", "MPEG-4 LP, limit 53", "gzip -9"]
+    assert list(contenders(",".join(names))[0]) == names
+    assert list(contenders(" app , xz -9e")[0]) == ["app", "xz -9e"]
     with pytest.raises(mp.ParameterError, match="--only; expected codecs, or some of app"):
         contenders("app,lzw")
+    with pytest.raises(mp.ParameterError, match="app:t; expected 1 to"):
+        contenders("app:t=0")
 
 
 def test_a_clip_that_cannot_be_read_does_not_take_the_model_with_it(

@@ -3,6 +3,7 @@
 import bz2
 import gzip
 import lzma
+import re
 import shutil
 import subprocess
 import tempfile
@@ -23,6 +24,8 @@ from mocapress.errors import ParameterError
 
 T = TypeVar("T")
 _LEVELS = (1, 6, 9)
+_COMMA = re.compile(r",(?!\s*(?:\w+=|limit ))")
+"""Between names, not inside of ``app:t=10,table=k2-uniform`` and ``MPEG-4 LP, limit 53``."""
 Transform = Callable[[bytes], bytes]
 
 
@@ -58,20 +61,16 @@ def contenders(only: str = "") -> tuple[dict[str, Contender], list[str]]:
     if not only:
         return found, missing
     chosen: dict[str, Contender] = {}
-    for name in map(str.strip, only.split(",")):
+    names = [name.strip() for name in _COMMA.split(only)]
+    for name in names:
         if name in found:
             chosen[name] = found[name]
+        elif name.partition(":")[0] in codecs.codec_ids():
+            chosen[name] = codecs.codec(name)
         elif name not in missing:
-            chosen[name] = _codec_of(name, [*found, *missing])
-    return chosen, [name for name in missing if name in only.split(",")]
-
-
-def _codec_of(name: str, known: list[str]) -> Codec:
-    try:
-        return codecs.codec(name)
-    except ParameterError as error:
-        expected = f"codecs, or some of {', '.join(known)}"
-        raise ParameterError("--only", expected=expected, found=name) from error
+            expected = f"codecs, or some of {'; '.join([*found, *missing])}"
+            raise ParameterError("--only", expected=expected, found=repr(name))
+    return chosen, [name for name in missing if name in names]
 
 
 def _codec_contenders() -> dict[str, Codec]:

@@ -227,7 +227,7 @@ def bench_lossless(
     ] = None,
     only: Annotated[
         str,
-        typer.Option("--only", help="Codecs, with a parameter or none, and tools; commas between."),
+        typer.Option("--only", help="Codecs, e.g. app:t=10, and tools; commas between."),
     ] = "",
     folds: Annotated[
         int | None,
