@@ -39,10 +39,10 @@ build/fuzz/%: core/fuzz/fuzz_%.cpp core/fuzz/driver.cpp $(kernels) $(wildcard co
 	$(CXX) $(SANITIZE) $< core/fuzz/driver.cpp $(kernels) -o $@
 
 # A codec's kernels built in other ways, build/check/WAY/CODEC: each must print what
-# tests/golden/kernels_CODEC.txt says. MOCAPRESS_ONE_TARGET turns run-time dispatch off, so that a
-# way is what its flags say.
+# tests/golden/kernels_CODEC.txt says. MOCAPRESS_NO_CLONES turns run-time dispatch off, so that a
+# way is what its flags say; the usual one has it, and emulated processors choose.
 EXACT := -std=c++20 -ffp-contract=off -Wall -Wextra -Icore
-ONE := -DMOCAPRESS_ONE_TARGET
+ONE := -DMOCAPRESS_NO_CLONES
 check_usual := $(CXX) -O3 $(EXACT)
 check_o0 := $(CXX) -O0 $(EXACT) $(ONE)
 check_baseline := $(CXX) -O3 -march=x86-64 $(EXACT) $(ONE)
@@ -57,7 +57,7 @@ check_contracted := $(CXX) -O3 -mavx2 -mfma $(EXACT) $(ONE) -ffp-contract=fast
 build/check/%: $(wildcard core/check/*) $(kernels) $(wildcard core/*.hpp)
 	@mkdir -p $(@D)
 	$(check_$(*D)) core/check/check_$(*F).cpp $(wildcard core/$(*F).cpp core/$(*F)_*.cpp) \
-	    core/snap.cpp -o $@
+	    $(wildcard core/snap.cpp core/number_line.cpp) -o $@
 
 bench: $(VENV)/.built corpus
 	$(BIN)/mocapress bench lossless $(if $(wildcard corpus/.version),corpus/amc/cmu)

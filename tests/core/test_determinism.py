@@ -45,6 +45,9 @@ WAYS = {
     "as the package is built, on the oldest x86-64, emulated": Way(
         "usual", under=("qemu-x86_64", "-cpu", "qemu64")
     ),
+    "as the package is built, on one with AVX2, emulated": Way(
+        "usual", under=("qemu-x86_64", "-cpu", "Haswell")
+    ),
 }
 
 
