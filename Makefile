@@ -7,7 +7,7 @@ CORPUS_SOURCE := ../shared/data
 SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined -fno-sanitize-recover=all -Icore
 FUZZ_RUNS ?= 100000
 
-.PHONY: demo test check tests sanitize fuzz bench wheel clean
+.PHONY: demo test check tests test-js sanitize fuzz bench wheel clean
 
 demo: $(VENV)/.built
 	@$(BIN)/mocapress bench demo
@@ -38,6 +38,8 @@ build/fuzz/%: core/fuzz/fuzz_%.cpp core/fuzz/driver.cpp $(kernels) $(wildcard co
 	@mkdir -p build/fuzz
 	$(CXX) $(SANITIZE) $< core/fuzz/driver.cpp $(kernels) -o $@
 
+test-js:
+	node --test viewer/diffma/test/*.test.js
 # A codec's kernels built in other ways, build/check/WAY/CODEC: each must print what
 # tests/golden/kernels_CODEC.txt says. MOCAPRESS_NO_CLONES turns run-time dispatch off, so that a
 # way is what its flags say; the usual one has it, and emulated processors choose.
