@@ -40,6 +40,7 @@ build/fuzz/%: core/fuzz/fuzz_%.cpp core/fuzz/driver.cpp $(kernels) $(wildcard co
 
 test-js:
 	node --test viewer/diffma/test/*.test.js
+
 # A codec's kernels built in other ways, build/check/WAY/CODEC: each must print what
 # tests/golden/kernels_CODEC.txt says. MOCAPRESS_NO_CLONES turns run-time dispatch off, so that a
 # way is what its flags say; the usual one has it, and emulated processors choose.

@@ -4,4 +4,5 @@
 NB_MODULE(_core, module) {
   mocapress::bind_text(module);
   mocapress::bind_app(module);
+  mocapress::bind_diffma(module);
 }

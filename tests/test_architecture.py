@@ -15,7 +15,7 @@ ROWS = [
     {"binary", "files"},
     {"model"},
     {"formats", "codecs", "container"},
-    {"convert", "trained"},
+    {"convert", "diffma_json", "trained"},
     {"restore"},
     {"api"},
     {"describe", "bench"},

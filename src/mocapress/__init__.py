@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from mocapress.api import compress, read, write
     from mocapress.codecs import Model, codec
     from mocapress.convert import to_amc_clip, to_bvh_clip
+    from mocapress.diffma_json import to_json
     from mocapress.model import Clip, Column, Joint, NumberFormat, Skeleton
     from mocapress.model.kinematics import positions, rotations
     from mocapress.restore import decompress, load
@@ -56,6 +57,7 @@ __all__ = [
     "save_model",
     "to_amc_clip",
     "to_bvh_clip",
+    "to_json",
     "train",
     "write",
 ]
@@ -66,6 +68,7 @@ _LAZY = {
     **dict.fromkeys(("decompress", "load"), "mocapress.restore"),
     **dict.fromkeys(("Model", "codec"), "mocapress.codecs"),
     **dict.fromkeys(("to_amc_clip", "to_bvh_clip"), "mocapress.convert"),
+    "to_json": "mocapress.diffma_json",
     **dict.fromkeys(("Clip", "Column", "Joint", "NumberFormat", "Skeleton"), "mocapress.model"),
     **dict.fromkeys(("positions", "rotations"), "mocapress.model.kinematics"),
     **dict.fromkeys(("load_model", "save_model", "train"), "mocapress.trained"),

@@ -70,3 +70,27 @@ def app_prediction_error(
 def snap(values: NDArray[np.float64], plan: NDArray[np.int32]) -> None: ...
 def encode_differences(differences: NDArray[np.int64]) -> bytes: ...
 def decode_differences(coded: bytes, differences: NDArray[np.int64]) -> None: ...
+
+# One channel of DiffMA; see core/diffma.hpp.
+
+def diffma_encode(
+    values: NDArray[np.float64],
+    bits: int,
+    window: int,
+    bound: float,
+    order: int,
+    tolerance: float,
+    round_offset: float,
+    max_error: float,
+    spare_signs: bool,
+) -> tuple[bytes, NDArray[np.float64]]: ...
+def diffma_scan(opcodes: bytes, bits: int) -> tuple[int, int, int, int]: ...
+def diffma_decode(
+    opcodes: bytes,
+    table: NDArray[np.float64],
+    values: NDArray[np.float64],
+    bits: int,
+    window: int,
+    bound: float,
+    order: int,
+) -> None: ...

@@ -4,13 +4,14 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
-from mocapress import codecs, convert
+from mocapress import codecs, convert, diffma_json
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.container import Kind, pack, pack_file
 from mocapress.errors import FormatError, MocapressError
 from mocapress.files import write_whole
 from mocapress.formats import asf
-from mocapress.formats.files import find_asf, format_clip, read, sniff, split
+from mocapress.formats import files as motion_files
+from mocapress.formats.files import find_asf, format_clip, sniff, split
 from mocapress.model import Clip, Skeleton
 from mocapress.restore import decompress, load
 from mocapress.trained import load_model
@@ -160,8 +161,31 @@ def _compress_plain(data: bytes) -> bytes:
     )
 
 
+def read(path: str | Path, *, asf_path: str | Path | None = None) -> Clip:
+    """Read a motion file: AMC, BVH, ASF or DiffMA JSON.
+
+    Parameters
+    ----------
+    path
+        An ASF alone gives a clip of its skeleton without frames.
+    asf_path
+        The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
+
+    Raises
+    ------
+    FormatError
+        When the file does not follow its format: with file, place, expected and found.
+    OSError
+        When it cannot be opened.
+
+    """
+    if diffma_json.is_json(b"", str(path)):
+        return diffma_json.json_to_clip(Path(path).read_bytes())
+    return motion_files.read(path, asf_path=asf_path)
+
+
 def write(clip: Clip, path: str | Path, *, force: bool = False) -> None:
-    """Write a clip as AMC or BVH, as the name's ending says.
+    """Write a clip as AMC, BVH or (``.diffma.json``, ``.diffma.json.xz``) DiffMA JSON.
 
     The clip is converted where its columns are those of the other format. Beside an AMC its
     skeleton is written as an ASF of the same name.
@@ -175,6 +199,9 @@ def write(clip: Clip, path: str | Path, *, force: bool = False) -> None:
 
     """
     path = Path(path)
+    if diffma_json.is_json(b"", path.name):
+        write_whole(path, diffma_json.named(path.name, diffma_json.to_json(clip)), force=force)
+        return
     kind = path.suffix.lower()[1:]
     if kind == "bvh":
         clip = convert.to_bvh_clip(clip)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from mocapress import api, codecs
+from mocapress import api, codecs, diffma_json
 from mocapress.codecs import Encoded, Model
 from mocapress.container import Kind, parse
 from mocapress.convert import suggest_unit
@@ -51,6 +51,28 @@ def describe_model(model: Model, size: int) -> dict[str, Any]:
         "payload_bytes": len(model.payload),
         "sha256": model.digest.hex(),
     }
+
+
+def describe_json(blob: bytes) -> dict[str, Any]:
+    """Describe a DiffMA JSON, packed or not."""
+    document = diffma_json.open_json(blob)
+    clip = diffma_json.json_to_clip(blob)
+    bounds = sorted({plan.bound for plan in document.plans})
+    orders = sorted({plan.order for plan in document.plans})
+    facts: dict[str, Any] = {
+        "format": "diffma.json",
+        "compressed_bytes": len(blob),
+        "bits": document.coding.bits,
+        "window": document.coding.window,
+        "bounds": " to ".join(f"{bound:g}" for bound in dict.fromkeys(bounds[:1] + bounds[-1:])),
+        "orders": ", ".join(map(str, orders)),
+        "levels": ", ".join(f"{level.bound:g}" for level in document.levels) or None,
+        "layout_bytes": len(document.layout) or None,
+    }
+    facts |= describe_clip(clip)
+    if clip.values.size:
+        facts["bits_per_sample"] = 8 * len(blob) / clip.values.size
+    return facts
 
 
 def describe_mcz(

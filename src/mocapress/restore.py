@@ -1,4 +1,4 @@
-"""From ``.mcz`` files back to the original files, and to clips."""
+"""From compressed files back to the original files, and to clips."""
 
 import hashlib
 import mmap
@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress import codecs
+from mocapress import codecs, diffma_json
 from mocapress.codecs import Chunk, Codec, Model
 from mocapress.container import Kind, Mcz, parse, unpack
 from mocapress.errors import CorruptError, FormatError, ParameterError
@@ -27,7 +27,7 @@ def decompress(source: str | Path | bytes, *, models: Sequence[Place] = ()) -> b
     Parameters
     ----------
     source
-        A path or the file's bytes.
+        A ``.mcz`` or a DiffMA JSON, packed or not: a path or the file's bytes.
     models
         Where to look for the model that the file may need: models, their files, or folders of
         them; then beside the file, then in the folders that ``MOCAPRESS_MODELS`` names.
@@ -40,7 +40,10 @@ def decompress(source: str | Path | bytes, *, models: Sequence[Place] = ()) -> b
         When the model that the file needs is nowhere.
 
     """
-    mcz = parse(_contents(source))
+    contents = _contents(source)
+    if diffma_json.is_json(contents):
+        return diffma_json.json_to_file(contents)[1]
+    mcz = parse(contents)
     if mcz.kind is Kind.BYTES:
         restored, lossless = unpack(mcz.payload(0), "contents", mcz.size), True
     else:
@@ -64,7 +67,7 @@ def load(
     asf_path: str | Path | None = None,
     models: Sequence[Place] = (),
 ) -> Clip:
-    """Give the clip in a ``.mcz``, or some of its frames.
+    """Give the clip in a ``.mcz`` or a DiffMA JSON, or some of its frames.
 
     Parameters
     ----------
@@ -85,7 +88,11 @@ def load(
         When the model that the file needs is nowhere.
 
     """
-    mcz = parse(_contents(source))
+    packed = _contents(source)
+    if diffma_json.is_json(packed):
+        clip = diffma_json.json_to_clip(packed)
+        return clip if frames is None else clip.with_values(clip.values[frames])
+    mcz = parse(packed)
     skeleton = _skeleton(mcz, source, asf_path)
     if mcz.kind is Kind.BYTES:
         contents = decompress(source)

@@ -64,13 +64,24 @@ def options(
     _ = version, debug
 
 
+class Packed(StrEnum):
+    """Kinds of compressed files."""
+
+    MCZ = "mcz"
+    JSON = "diffma.json"
+    JSON_XZ = "diffma.json.xz"
+
+
 @app.command()
 def compress(
     inputs: Inputs,
     output: Output = None,
     codec: Annotated[
-        str, typer.Option("--codec", help="Codec, e.g. app:t=15,table=k3-non-uniform.")
-    ] = "app",
+        str | None,
+        typer.Option(
+            "--codec", help="Codec, e.g. diffma:bound=4. Usually lossless; diffma for JSON."
+        ),
+    ] = None,
     level: Annotated[
         int | None,
         typer.Option("--level", min=1, max=9, help="1 (fast) to 9 (strong); as codec ID:level=N."),
@@ -78,6 +89,14 @@ def compress(
     model: Annotated[
         Path | None,
         typer.Option("--model", help="Model from mocapress train, needed again to decompress."),
+    ] = None,
+    to: Annotated[
+        Packed | None,
+        typer.Option("--to", help="Kind of file; else what the output's name says, or mcz."),
+    ] = None,
+    target_psnr: Annotated[
+        float | None,
+        typer.Option("--target-psnr", help="Choose diffma's bound for this PSNR.", metavar="DB"),
     ] = None,
     asf: Asf = None,
     embed_asf: Annotated[
@@ -88,15 +107,17 @@ def compress(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Compress motion files to .mcz; each is decoded again and compared before it is written."""
+    """Compress motion files to .mcz or JSON, decoded again and compared before they are written."""
     from mocapress.cli.coding import compress_files
 
     compress_files(
         inputs,
         output,
         codec,
+        to=to and to.value,
         level=level,
         model=model,
+        target_psnr=target_psnr,
         asf=asf,
         embed_asf=embed_asf,
         jobs=jobs,
@@ -115,7 +136,7 @@ def decompress(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Restore the original files, byte for byte."""
+    """Restore the original files: byte for byte, or, of a lossy codec, with the decoded values."""
     from mocapress.cli.coding import decompress_files
 
     decompress_files(inputs, output, models=models or [], jobs=jobs, force=force, json=json)
@@ -129,7 +150,7 @@ def verify(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Decode .mcz files and check every checksum; exit code 3 when one is damaged."""
+    """Decode compressed files and check every checksum; exit code 3 when one is damaged."""
     from mocapress.cli.coding import verify_files
 
     verify_files(inputs, models=models or [], jobs=jobs, json=json)
@@ -164,7 +185,7 @@ def info(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Say what is in motion files, .mcz files and models."""
+    """Say what is in motion files, compressed files and models."""
     from mocapress.cli.info import show_info
 
     show_info(inputs, asf=asf, models=models or [], jobs=jobs, json=json)

@@ -41,7 +41,7 @@ def find(inputs: Sequence[Path], suffixes: tuple[str, ...]) -> list[Job]:
             jobs += [
                 Job(found, path)
                 for found in sorted(path.rglob("*"))
-                if found.suffix.lower() in suffixes and found.is_file()
+                if found.name.lower().endswith(suffixes) and found.is_file()
             ]
         else:
             jobs.append(Job(path, path.parent))

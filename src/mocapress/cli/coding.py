@@ -2,26 +2,34 @@
 
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from mocapress import api, codecs
+from mocapress import api, codecs, diffma_json
 from mocapress.cli.batch import STREAM, Job, Outcome, contents, find, run, target, usage
 from mocapress.cli.models import open_model, open_models, places_for
+from mocapress.codecs import Codec
+from mocapress.codecs.diffma import DiffMA
 from mocapress.errors import ParameterError
 from mocapress.files import write_whole
+from mocapress.formats.asf import parse_asf
 from mocapress.formats.files import find_asf, sniff
 
 _MOTION = (".amc", ".bvh", ".asf")
+_COMPRESSED = (".mcz", *diffma_json.SUFFIXES)
 
 
 def compress_files(
     inputs: Sequence[Path],
     output: Path | None,
-    codec: str,
+    codec: str | None,
     *,
+    to: str | None,
     level: int | None,
     model: Path | None,
+    target_psnr: float | None,
     asf: Path | None,
     embed_asf: bool,
     jobs: int,
@@ -30,37 +38,51 @@ def compress_files(
 ) -> None:
     """Compress files."""
     learned = open_model(model) if model else None
+    to = to or _kind_of(output)
     try:
-        made = codecs.codec(codec)
+        made = codecs.codec(codec or (codecs.DEFAULT_CODEC if to == "mcz" else "diffma"))
         if level is not None:
             made = codecs.with_level(made, level)
         if learned is not None:
             codecs.learner(made, learned)
+        made = _aimed(made, target_psnr)
+        if to != "mcz" and not isinstance(made, DiffMA):
+            raise ParameterError(f"{made.id} makes no {to}", expected="diffma")
     except ParameterError as error:
         usage(f"--codec: {error}")
-    files = find(inputs, _MOTION)
+    files = find(inputs, _MOTION[:2] if isinstance(made, DiffMA) else _MOTION)
 
     def work(job: Job) -> dict[str, Any]:
-        place = target(job, output, _compressed_name, many=len(files) > 1)
+        place = target(job, output, partial(_compressed_name, to=to), many=len(files) > 1)
         data = contents(job.source)
+        name = str(job.source) if job.source != STREAM else ""
         beside = asf
         if beside is None and job.source != STREAM and sniff(data, job.source.name) == "amc":
             beside = find_asf(job.source)
-        compressed = api.compress_bytes(
-            data,
-            made,
-            name=str(job.source) if job.source != STREAM else "",
-            asf_data=beside.read_bytes() if beside else b"",
-            embed_asf=embed_asf,
-            model=learned,
-        )
-        _put(place, compressed.blob, force=force)
+        skeleton = beside.read_bytes() if beside else b""
+        warning = None
+        if to == "mcz":
+            compressed = api.compress_bytes(
+                data,
+                made,
+                name=name,
+                asf_data=skeleton,
+                embed_asf=embed_asf,
+                model=learned,
+            )
+            blob, warning = compressed.blob, compressed.warning
+        else:
+            assert isinstance(made, DiffMA)
+            joints = parse_asf(skeleton, str(beside)) if skeleton else None
+            text = diffma_json.file_to_json(data, made, name=name, skeleton=joints)
+            blob = diffma_json.named(to, text)
+        _put(place, blob, force=force)
         return {
             "output": str(place),
             "raw_bytes": len(data),
-            "compressed_bytes": len(compressed.blob),
-            "ratio": round(len(data) / len(compressed.blob), 3),
-            "warning": compressed.warning,
+            "compressed_bytes": len(blob),
+            "ratio": round(len(data) / len(blob), 3),
+            "warning": warning,
         }
 
     run(files, work, threads=jobs, json=json, show=_show_sizes)
@@ -76,12 +98,15 @@ def decompress_files(
     json: bool,
 ) -> None:
     """Restore files."""
-    files, given = find(inputs, (".mcz",)), open_models(models)
+    files, given = find(inputs, _COMPRESSED), open_models(models)
 
     def work(job: Job) -> dict[str, Any]:
-        place = target(job, output, _original_name, many=len(files) > 1)
         blob = contents(job.source)
-        data = api.decompress(blob, models=places_for(job, given))
+        if diffma_json.is_json(blob, job.source.name):
+            kind, data = diffma_json.json_to_file(blob)
+        else:
+            kind, data = "", api.decompress(blob, models=places_for(job, given))
+        place = target(job, output, partial(_original_name, kind=kind), many=len(files) > 1)
         _put(place, data, force=force)
         return {"output": str(place), "raw_bytes": len(data), "compressed_bytes": len(blob)}
 
@@ -90,11 +115,14 @@ def decompress_files(
 
 def verify_files(inputs: Sequence[Path], *, models: Sequence[Path], jobs: int, json: bool) -> None:
     """Decode files and compare digests."""
-    files, given = find(inputs, (".mcz",)), open_models(models)
+    files, given = find(inputs, _COMPRESSED), open_models(models)
 
     def work(job: Job) -> dict[str, Any]:
-        data = api.decompress(contents(job.source), models=places_for(job, given))
-        return {"raw_bytes": len(data), "ok": True}
+        data = contents(job.source)
+        if diffma_json.is_json(data, job.source.name):  # a layout is not needed to be sound
+            return {"raw_bytes": diffma_json.json_to_clip(data).values.nbytes, "ok": True}
+        restored = api.decompress(data, models=places_for(job, given))
+        return {"raw_bytes": len(restored), "ok": True}
 
     def show(outcomes: list[Outcome]) -> None:
         for outcome in outcomes:
@@ -103,11 +131,27 @@ def verify_files(inputs: Sequence[Path], *, models: Sequence[Path], jobs: int, j
     run(files, work, threads=jobs, json=json, show=show, failure_code=3)
 
 
-def _compressed_name(source: Path) -> Path:
-    return source.with_name(source.name + ".mcz")
+def _kind_of(output: Path | None) -> str:
+    name = output.name.lower() if output else ""
+    return next((s[1:] for s in reversed(diffma_json.SUFFIXES) if name.endswith(s)), "mcz")
 
 
-def _original_name(source: Path) -> Path:
+def _aimed(codec: Codec, target_psnr: float | None) -> Codec:
+    if target_psnr is None:
+        return codec
+    if not isinstance(codec, DiffMA):
+        raise ParameterError("--target-psnr is for a lossy codec", expected="diffma")
+    return replace(codec, target_psnr=target_psnr)
+
+
+def _compressed_name(source: Path, to: str) -> Path:
+    name = source.name if to == "mcz" else source.stem
+    return source.with_name(f"{name}.{to}")
+
+
+def _original_name(source: Path, kind: str) -> Path:
+    if kind and diffma_json.stem(source.name) != source.name:
+        return source.with_name(f"{diffma_json.stem(source.name)}.{kind}")
     if source.suffix.lower() != ".mcz":
         raise ParameterError(
             "cannot tell the output's name; -o gives it", file=str(source), expected="NAME.mcz"

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from mocapress import api, convert
+from mocapress import api, convert, diffma_json
 from mocapress.cli.batch import STREAM, Job, Outcome, find, run, target, usage
 from mocapress.cli.models import open_models
 from mocapress.errors import ParameterError, UnsupportedError
@@ -26,14 +26,17 @@ def convert_files(
     force: bool,
     json: bool,
 ) -> None:
-    """Convert files; ``.mcz`` files are taken, too."""
+    """Convert files; ``.mcz`` and DiffMA JSON are taken, too."""
     to = to or _kind_of(output)
     files = find(inputs, (".amc",) if to == "bvh" else (".bvh",))
     given = open_models(models)
 
     def rename(source: Path) -> Path:
-        stem = source.with_suffix("") if source.suffix.lower() == ".mcz" else source
-        return stem.with_suffix(f".{to}")
+        packed = source.suffix.lower() == ".mcz"
+        name = diffma_json.stem(source.stem if packed else source.name)
+        return source.with_name(
+            f"{Path(name).stem if packed or name == source.name else name}.{to}"
+        )
 
     def work(job: Job) -> dict[str, Any]:
         place = target(job, output, rename, many=len(files) > 1)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from mocapress import describe
+from mocapress import describe, diffma_json
 from mocapress.cli.batch import STREAM, Job, Outcome, contents, find, run
 from mocapress.cli.models import open_models, places_for
 from mocapress.container import mcm, mcz
@@ -15,8 +15,8 @@ from mocapress.trained import load_model
 def show_info(
     inputs: Sequence[Path], *, asf: Path | None, models: Sequence[Path], jobs: int, json: bool
 ) -> None:
-    """Describe motion files, ``.mcz`` files and models."""
-    files = find(inputs, (".amc", ".bvh", ".asf", ".mcz", ".mcm"))
+    """Describe motion files, compressed files and models."""
+    files = find(inputs, (".amc", ".bvh", ".asf", ".mcz", ".mcm", *diffma_json.SUFFIXES))
     given = open_models(models)
 
     def work(job: Job) -> dict[str, Any]:
@@ -27,6 +27,8 @@ def show_info(
             return describe.describe_mcz(data, asf_path=asf or beside, models=models)
         if data[:4] == mcm.MAGIC:
             return describe.describe_model(load_model(data), len(data))
+        if diffma_json.is_json(data, job.source.name):
+            return describe.describe_json(data)
         return describe.describe_file(job.source, asf_path=asf)
 
     def show(outcomes: list[Outcome]) -> None:

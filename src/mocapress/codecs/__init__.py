@@ -33,6 +33,7 @@ LEVELS = range(1, 10)
 # id -> module and class; imported when first asked for, so that one codec does not pay for others.
 _REGISTRY: dict[str, tuple[str, str]] = {
     "app": ("mocapress.codecs.app", "App"),
+    "diffma": ("mocapress.codecs.diffma", "DiffMA"),
 }
 
 
