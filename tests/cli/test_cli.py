@@ -103,6 +103,12 @@ def test_json_is_for_machines(walk: Path, tmp_path: Path) -> None:
         (["verify", "walk.amc"], 3, "not an .mcz file"),
         (["info", "missing"], 1, "No such file"),
         (["convert", "walk.amc", "-o", "x.bvh"], 1, "no skeleton"),
+        (["compress", "walk.amc", "--codec", "app", "-o", "x.diffma.json"], 2, "expected diffma"),
+        (["compress", "walk.amc", "--target-psnr", "40"], 2, "expected diffma"),
+        (["compress", "walk.amc", "--codec", "diffma:levels=8"], 2, "levels are for JSON"),
+        (["compress", "broken.bvh", "-o", "x.diffma.json"], 1, "broken.bvh, line 3"),
+        (["decompress", "x.diffma.json"], 1, "x.diffma.json: $.channels; expected an array"),
+        (["verify", "x.diffma.json"], 3, "$.channels; expected an array; found nothing"),
         (["convert", "walk.amc"], 2, "say what to convert to"),
         (["compress", "empty"], 2, "no .amc or .bvh or .asf files"),
         (["compress"], 2, "Missing argument"),
@@ -116,6 +122,9 @@ def test_errors_are_one_line_and_an_exit_code(
     monkeypatch.chdir(walk.parent)
     Path("empty").mkdir()
     shutil.copy(GOLDEN / "v1_learner.mcm", "v1.mcm")
+    Path("broken.bvh").write_bytes(b"HIERARCHY\nROOT x\n")
+    if "compress" not in words:
+        Path("x.diffma.json").write_bytes(b"{}")
     done = process(*words)
     error = done.stderr.decode()
     assert done.returncode == code
@@ -226,6 +235,29 @@ def test_convert_writes_a_file_that_others_read(samples: Path, tmp_path: Path) -
     result = mocapress("convert", samples / "freebvh.bvh", "--to", "amc", "-o", tmp_path)
     assert result.exit_code == 0
     assert mp.read(tmp_path / "freebvh.amc").skeleton is not None
+
+
+@pytest.mark.parametrize("ending", ["diffma.json", "diffma.json.xz"])
+def test_json_there_and_back(samples: Path, tmp_path: Path, ending: str) -> None:
+    source, made = samples / "freebvh.bvh", tmp_path / f"walk.{ending}"
+    words = ("compress", source, "--codec", "diffma:max_error=0.01", "-o", made)
+    assert mocapress(*words).exit_code == 0
+    assert mocapress("verify", made).exit_code == 0
+    assert mocapress("decompress", made).exit_code == 0
+    assert mocapress("convert", made, "--to", "amc", "-o", tmp_path / "other.amc").exit_code == 0
+    error = mp.read(tmp_path / "walk.bvh").values - mp.read(source).values
+    assert 0 < abs(error).max() <= 0.01 + 5e-5  # printed with four decimals
+    (facts,) = json.loads(mocapress("info", made, "--json").stdout)
+    assert (facts["format"], facts["frames"], facts["channels"]) == ("diffma.json", 69, 168)
+
+
+def test_folders_of_json(samples: Path, tmp_path: Path) -> None:
+    words = ("--to", "diffma.json.xz", "--target-psnr", "40", "-o", tmp_path / "json", "-j", 2)
+    assert mocapress("compress", samples, *words).exit_code == 0
+    made = sorted(path.name for path in (tmp_path / "json").iterdir())
+    assert made == [f"{s}.diffma.json.xz" for s in ("cmu_01_01", "freebvh", "mocapbank")]
+    assert mocapress("decompress", tmp_path / "json", "-o", tmp_path / "back").exit_code == 0
+    assert (tmp_path / "back/cmu_01_01.amc").exists()
 
 
 def test_bench_writes_rows_for_machines(samples: Path, tmp_path: Path) -> None:

@@ -24,6 +24,8 @@ from mocapress.model import Clip, Column, Joint, NumberFormat, Skeleton
 from mocapress.model.number_format import NumberKind
 
 LOSSLESS = payloads.specs()
+LOSSY = [name for name in codecs.codec_ids() if not codecs.codec(name).lossless]
+ALL = [*LOSSLESS, *LOSSY]
 FORMATS = [
     None,
     NumberFormat(NumberKind.GENERAL, 6, exponent_digits=3),
@@ -77,6 +79,11 @@ def round_trip(codec: Codec, clip: Clip) -> None:
     assert decoded.tobytes() == clip.values.tobytes()
 
 
+def whole(codec: Codec, clip: Clip) -> NDArray[np.float64]:
+    encoded = codec.encode(clip)
+    return codec.decode(encoded.header, encoded.chunks, clip.columns)
+
+
 def restarts(chunks: tuple[Chunk, ...]) -> list[int]:
     return [i for i, chunk in enumerate(chunks) if chunk.restart]
 
@@ -124,21 +131,42 @@ def test_odd_clips_come_back(name: str, values: NDArray[np.float64]) -> None:
         round_trip(codecs.codec(name), clip_of(values, decimal))
 
 
-@pytest.mark.parametrize("name", LOSSLESS)
+@pytest.mark.parametrize("name", LOSSY)
+@pytest.mark.parametrize("limit", [0.0, 0.01, 0.5])
+@given(
+    values=arrays(
+        np.float64,
+        st.tuples(st.integers(0, 40), st.integers(1, 7)),
+        elements=st.floats() | st.floats(-10, 10),
+    )
+)
+def test_errors_stay_within_what_was_asked(
+    name: str, limit: float, values: NDArray[np.float64]
+) -> None:
+    """Every lossy codec takes ``max_error``; what is no finite number comes back as it is."""
+    decoded = whole(codecs.codec(f"{name}:max_error={limit}"), clip_of(values))
+    finite = np.isfinite(values)
+    assert decoded.shape == values.shape
+    assert (np.abs(decoded[finite] - values[finite]) <= limit).all()
+    assert np.array_equal(decoded[~finite], values[~finite], equal_nan=True)
+
+
+@pytest.mark.parametrize("name", ALL)
 def test_decoding_can_begin_at_every_restart(name: str) -> None:
     clip = clip_of(smooth(2500, 6))
     codec = codecs.codec(name)
-    encoded = codec.encode(clip)
+    encoded, all_rows = codec.encode(clip), whole(codec, clip)
     assert restarts(encoded.chunks)[0] == 0
+    assert len(restarts(encoded.chunks)) > 1
     for start in restarts(encoded.chunks):
         for stop in (start + 1, len(encoded.chunks)):
             chunks = encoded.chunks[start:stop]
             rows = slice(chunks[0].first, chunks[-1].first + chunks[-1].frames)
             decoded = codec.decode(encoded.header, chunks, clip.columns)
-            assert decoded.tobytes() == clip.values[rows].tobytes()
+            assert decoded.tobytes() == all_rows[rows].tobytes()
 
 
-@pytest.mark.parametrize("name", LOSSLESS)
+@pytest.mark.parametrize("name", ALL)
 def test_the_same_bytes_on_every_run(name: str) -> None:
     clip = clip_of(on_grid(smooth(600, 9), FORMATS[1]), FORMATS[1])
     assert codecs.codec(name).encode(clip) == codecs.codec(name).encode(clip)
@@ -159,7 +187,7 @@ def decode_broken(
         return None
 
 
-@pytest.mark.parametrize("name", LOSSLESS)
+@pytest.mark.parametrize("name", ALL)
 def test_truncated_payloads_are_found_out(name: str) -> None:
     clip = clip_of(smooth(25, 4))
     codec = codecs.codec(name)
@@ -170,10 +198,10 @@ def test_truncated_payloads_are_found_out(name: str) -> None:
         assert decode_broken(codec, encoded.header, cut, clip.columns) is None
     for length in range(len(encoded.header)):
         found = decode_broken(codec, encoded.header[:length], chunk, clip.columns)
-        assert found is None or found.tobytes() != clip.values.tobytes()
+        assert found is None or found.tobytes() != whole(codec, clip).tobytes()
 
 
-@pytest.mark.parametrize("name", LOSSLESS)
+@pytest.mark.parametrize("name", ALL)
 def test_flipped_bits_give_an_error_or_values_of_the_right_shape(name: str) -> None:
     """That they are wrong is for the container's checksums to find."""
     clip = clip_of(smooth(25, 4))
@@ -193,7 +221,7 @@ def test_flipped_bits_give_an_error_or_values_of_the_right_shape(name: str) -> N
         assert found is None or found.shape == clip.values.shape
 
 
-@pytest.mark.parametrize("name", LOSSLESS)
+@pytest.mark.parametrize("name", ALL)
 def test_memory_does_not_follow_announcements(name: str) -> None:
     clip = clip_of(smooth(25, 4))
     codec = codecs.codec(name)

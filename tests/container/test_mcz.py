@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import mocapress as mp
+from mocapress.codecs import codec_ids
 from mocapress.container import Kind, pack, pack_file, parse, unpack
 from mocapress.errors import CorruptError, MocapressError, UnsupportedError
 
@@ -195,3 +196,4 @@ def test_there_are_golden_files_of_every_codec_and_kind() -> None:
     assert {kind for kind, _ in found} == set(Kind)
     codecs = {codec for _, codec in found}
     assert {"app", "app:t=4,table=k4-non-uniform,mantissa_limit=53,chunk=8"} <= codecs
+    assert {codec.partition(":")[0] for codec in codecs} == {"", *codec_ids()}

@@ -65,6 +65,19 @@ FILES = {
     ),
     "v1_walk.bvh": ((BVH + bvh_rows()).encode(), "app:mantissa_limit=53"),
     "v1_bytes.bin": (bytes(range(256)) * 3, "app"),
+    "v1_lossy.amc": (amc("\n").encode(), "diffma:bits=7,chunk=100"),
+    "v1_lossy.bvh": (
+        (BVH + bvh_rows()).encode(),
+        "diffma:target_psnr=40.0,per=channel,order=auto",
+    ),
+}
+# Beside NAME the document NAME.diffma.json; what comes back of it is NAME.
+DOCUMENTS = {
+    "v1_published.amc": (amc("\n").encode(), "diffma"),
+    "v1_extended.bvh": (
+        (BVH + bvh_rows()).encode(),
+        "diffma:bits=8,max_error=0.1,per=channel,order=auto,levels=64",
+    ),
 }
 
 
@@ -85,8 +98,15 @@ def kernels(codec: str) -> bytes:
 
 if __name__ == "__main__":
     for name, (data, codec) in FILES.items():
-        put(name, partial(bytes, data))
         put(f"{name}.mcz", partial(mp.compress, data, codec))
+        # Of a lossy codec, what comes back is kept.
+        lossless = mp.codec(codec).lossless
+        put(
+            name, partial(bytes, data) if lossless else partial(mp.decompress, HERE / f"{name}.mcz")
+        )
+    for name, (data, codec) in DOCUMENTS.items():
+        put(f"{name}.diffma.json", partial(mp.to_json, data, codec))
+        put(name, partial(mp.decompress, HERE / f"{name}.diffma.json"))
     learned = mp.Model("learner", bytes(range(100)) * 2)
     put("v1_learner.mcm", partial(model_bytes, learned))
     for program in sorted(HERE.parents[1].glob("core/check/check_*.cpp")):

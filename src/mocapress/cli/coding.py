@@ -101,12 +101,13 @@ def decompress_files(
     files, given = find(inputs, _COMPRESSED), open_models(models)
 
     def work(job: Job) -> dict[str, Any]:
-        blob = contents(job.source)
+        blob, many = contents(job.source), len(files) > 1
         if diffma_json.is_json(blob, job.source.name):
             kind, data = diffma_json.json_to_file(blob)
+            place = target(job, output, partial(_original_name, kind=kind), many=many)
         else:
-            kind, data = "", api.decompress(blob, models=places_for(job, given))
-        place = target(job, output, partial(_original_name, kind=kind), many=len(files) > 1)
+            place = target(job, output, partial(_original_name, kind=""), many=many)
+            data = api.decompress(blob, models=places_for(job, given))
         _put(place, data, force=force)
         return {"output": str(place), "raw_bytes": len(data), "compressed_bytes": len(blob)}
 

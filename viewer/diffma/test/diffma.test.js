@@ -55,7 +55,7 @@ test("Listing 2 gives Listing 1", () => {
 
 for (const { name, document, bound, values } of vectors) {
   test(`${name}: the same values as in Python`, () => {
-    const clip = decode(JSON.stringify(document), { bound });
+    const clip = decode(document, { bound });
     assert.deepEqual(
       clip.channels.map((channel) => [...channel]),
       values,

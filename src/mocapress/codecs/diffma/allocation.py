@@ -10,8 +10,9 @@ from mocapress.codecs.diffma.coding import Coding, Plan, Record
 
 # Bits that a number of the look-up table costs in the packed JSON: six digits and what parts them.
 _TABLE_BITS = 24.0
-# A quarter of an octave apart, in three digits, which is what the JSON has to hold.
-CHANNEL_BOUNDS = tuple(float(f"{2 ** (k / 4):.3g}") for k in range(-4, 37))
+# A quarter of an octave apart, in three digits, which is what the JSON has to hold; and one so
+# small that all goes to the table, so that every target can be met.
+CHANNEL_BOUNDS = (1e-9, *(float(f"{2 ** (k / 4):.3g}") for k in range(-8, 37)))
 # Of the paper, section 3.4.
 FILE_BOUNDS = tuple(2.0**k for k in range(7))
 # Higher ones amplify the error of what they continue; measured, none above 2 is ever worth it.
