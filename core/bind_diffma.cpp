@@ -26,9 +26,10 @@ diffma::Parameters parameters_of(int bits, std::size_t window, double bound, int
 
 std::string_view view(const nb::bytes& bytes) { return {bytes.c_str(), bytes.size()}; }
 
-std::tuple<nb::bytes, Table> encode(const Values& values, int bits, std::size_t window,
-                                    double bound, int order, double tolerance, double round_offset,
-                                    double max_error, bool spare_signs) {
+std::tuple<nb::bytes, Table, double> encode(const Values& values, int bits, std::size_t window,
+                                            double bound, int order, double tolerance,
+                                            double round_offset, double max_error,
+                                            bool spare_signs) {
   const auto parameters = parameters_of(bits, window, bound, order);
   // Moved to the heap, where NumPy keeps it as long as it needs it.
   auto* record = new diffma::Record;
@@ -39,7 +40,7 @@ std::tuple<nb::bytes, Table> encode(const Values& values, int bits, std::size_t 
                              {tolerance, round_offset, max_error, spare_signs});
   }
   return {nb::bytes(record->opcodes.data(), record->opcodes.size()),
-          Table(record->table.data(), {record->table.size()}, owner)};
+          Table(record->table.data(), {record->table.size()}, owner), record->squared_error};
 }
 
 // Steps, raws, fault and the character it stands at.

@@ -193,6 +193,7 @@ Record encode(std::span<const double> values, const Parameters& parameters, cons
         if (error < limits.tolerance && error <= limits.max_error) {  // line 21
           opcode = limits.spare_signs && q == 0 ? eql : apx + static_cast<unsigned>(q);
           decoded = near;
+          record.squared_error += error * error;
         }
       }
     }

@@ -34,6 +34,7 @@ struct Limits {
 struct Record {
   std::string opcodes;        // b
   std::vector<double> table;  // t
+  double squared_error = 0;   // sum over all samples that are numbers
 };
 
 // Algorithm 1. Any values: what is no number, and what follows it, goes to the table.

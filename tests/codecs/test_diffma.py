@@ -35,9 +35,10 @@ def encode(
     max_error: float = math.inf,
     spare_signs: bool = False,
 ) -> tuple[str, list[float]]:
-    opcodes, table = _core.diffma_encode(
+    opcodes, table, squared_error = _core.diffma_encode(
         np.array(x, dtype=np.float64), n, w, beta, order, tau, offset, max_error, spare_signs
     )
+    assert squared_error >= 0
     return opcodes.decode("ascii"), table.tolist()
 
 
@@ -220,6 +221,15 @@ def error_of(text: str, clip: mp.Clip) -> tuple[NDArray[np.float64], int]:
 
 def decibels(error: NDArray[np.float64]) -> float:
     return psnr(float((error**2).sum()), error.size)
+
+
+def test_the_squared_error_is_that_of_the_decoded_values(clip: mp.Clip) -> None:
+    channels = np.ascontiguousarray(clip.values.T)
+    plans = [Plan(8.0)] * len(channels)
+    records = Coding().encode(channels, plans)
+    errors = ((Coding().decode(records, plans, clip.frames) - channels) ** 2).sum(axis=1)
+    assert [record.squared_error for record in records] == pytest.approx(errors.tolist())
+    assert errors.sum() > 0
 
 
 def test_errors_are_limited_for_all_channels_or_some(clip: mp.Clip) -> None:

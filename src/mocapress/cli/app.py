@@ -288,6 +288,26 @@ def bench_lossless(
     )
 
 
+@bench_app.command("diffma")
+def bench_diffma(
+    corpus: Annotated[
+        Path | None, typer.Argument(help="Folder of clips; else the samples of a checkout.")
+    ] = None,
+    json: Annotated[
+        Path | None, typer.Option("--json", help="Write all rows to this file.", metavar="FILE")
+    ] = None,
+    markdown: Annotated[
+        Path | None, typer.Option("--markdown", help="Write the tables here.", metavar="FILE")
+    ] = None,
+    force: Force = False,
+    debug: Debug = False,
+) -> None:
+    """Repeat the evaluation of DiffMA, beside zfp and LZMA, and measure what goes past it."""
+    from mocapress.cli.bench_diffma import bench_diffma_files
+
+    bench_diffma_files(corpus, json=json, markdown=markdown, force=force)
+
+
 @bench_app.command("demo")
 def bench_demo(debug: Debug = False) -> None:
     """Compress and restore the samples of a checkout with every codec."""

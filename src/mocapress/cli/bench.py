@@ -30,7 +30,7 @@ def bench_lossless_files(
     force: bool,
 ) -> None:
     """Measure, print the totals, and write what was asked for."""
-    folder = corpus or _samples()
+    folder = corpus or sample_folder()
     paths = lossless.clips_in(folder) if folder.is_dir() else [folder]
     root = folder if folder.is_dir() else folder.parent
     if not paths:
@@ -39,10 +39,15 @@ def bench_lossless_files(
         learned = learning.given(paths, only, model) if model else []
         if folds:
             learned += learning.cross_validated(
-                paths, only, folds=folds, most_frames=train_frames, progress=_progress(0)
+                paths, only, folds=folds, most_frames=train_frames, progress=progress_line(0)
             )
         rows, notes = lossless.measure(
-            paths, root, only=only, learned=learned, repeat=repeat, progress=_progress(len(paths))
+            paths,
+            root,
+            only=only,
+            learned=learned,
+            repeat=repeat,
+            progress=progress_line(len(paths)),
         )
     except (ParameterError, CorruptError, FileNotFoundError) as error:
         usage(str(error))
@@ -77,7 +82,7 @@ def demo_files() -> None:
     from rich.console import Console
     from rich.table import Table
 
-    folder = _samples()
+    folder = sample_folder()
     lossless_ids = [name for name in codecs.codec_ids() if codecs.codec(name).lossless]
     names = [*lossless_ids, "gzip -9", "xz -9e", "zstd -22"]
     rows, notes = lossless.measure(lossless.clips_in(folder), folder, only=",".join(names))
@@ -112,7 +117,7 @@ def _figures(paths: list[Path], rows: list[tables.Row], folder: Path) -> dict[st
             clips.append((api.read(path), path.stat().st_size))
         except MocapressError:
             continue  # said already
-    numbers = app_figures.measure(clips, _progress(0))
+    numbers = app_figures.measure(clips, progress_line(0))
     try:
         app_figures.draw(numbers, folder)
         pareto.draw(rows, folder / "ratio_and_speed.png")
@@ -121,14 +126,16 @@ def _figures(paths: list[Path], rows: list[tables.Row], folder: Path) -> dict[st
     return numbers
 
 
-def _samples() -> Path:
+def sample_folder() -> Path:
+    """Give the samples of a checkout."""
     checkout = Path(lossless.__file__).parents[3] / "samples"
     if not checkout.is_dir():
         usage("name a folder of clips")
     return checkout
 
 
-def _progress(total: int) -> Any:
+def progress_line(total: int) -> Any:
+    """Give what to call with each clip's name: shows it, and how far one has come."""
     count = 0
 
     def show(what: str) -> None:

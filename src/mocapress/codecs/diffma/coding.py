@@ -40,6 +40,8 @@ class Record:
     """ASCII, b of the paper."""
     table: NDArray[np.float64]
     """(T,) float64, t of the paper."""
+    squared_error: float = 0.0
+    """Sum over all samples; the encoder knows it, a document does not."""
 
 
 @dataclass(frozen=True, slots=True)
