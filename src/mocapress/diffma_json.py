@@ -180,8 +180,8 @@ def open_json(data: bytes | memoryview) -> Document:
             data = decoder.decompress(data, max_length=_MOST_TEXT)
         except lzma.LZMAError as error:
             raise CorruptError(f"xz: cannot be unpacked ({error})") from error
-        if not decoder.eof:
-            raise CorruptError(f"xz: cut off, or more than {_MOST_TEXT} bytes")
+        if not decoder.eof or decoder.unused_data:
+            raise CorruptError(f"xz: cut off, or too long: more than {_MOST_TEXT} bytes unpacked")
     return read_document(data)
 
 

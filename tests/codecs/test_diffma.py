@@ -252,6 +252,13 @@ def test_own_bounds_meet_the_target_in_fewer_bytes(clip: mp.Clip) -> None:
     assert decibels(error_of("diffma:target_psnr=150,per=channel,chunk=1000", clip)[0]) >= 150
 
 
+def test_the_half_of_equation_2_2_is_worth_6_db(clip: mp.Clip) -> None:
+    """Listing 2 has none, the tables of the paper can only have been made with it."""
+    rounded, _ = error_of("diffma", clip)
+    cut_off, _ = error_of("diffma:round_offset=0", clip)
+    assert 5 < decibels(rounded) - decibels(cut_off) < 7
+
+
 def test_a_largest_error_alone_chooses_bounds_too(clip: mp.Clip) -> None:
     error, size = error_of("diffma:max_error=0.1,per=channel", clip)
     assert np.abs(error).max() <= 0.1
