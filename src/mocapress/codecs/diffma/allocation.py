@@ -33,7 +33,8 @@ class Trial:
 def attempt(coding: Coding, channels: NDArray[np.float64], plans: Sequence[Plan]) -> Trial:
     """Code channels, (C, F), and measure what comes of it."""
     records = coding.encode(channels, plans)
-    errors = np.array([record.squared_error for record in records])
+    # Squares of huge errors are infinite; a finite number can be subtracted from itself.
+    errors = np.minimum([record.squared_error for record in records], 1e300)
     return Trial(tuple(plans), errors, np.array([_rate(record) for record in records]))
 
 

@@ -100,7 +100,7 @@ class Document:
             keys = skeleton_keys(self.skeleton, self.places)
             parts.append(f'"skeleton":{json.dumps(keys, **_LIST)}')  # type: ignore[arg-type]
         if self.frame_time is not None:
-            parts.append(f'"frameTime":{self.frame_time.normalize():f}')
+            parts.append(f'"frameTime":{self.frame_time}')
         if self.layout:
             parts.append(f'"layout":"{base64.b64encode(self.layout).decode()}"')
         return f"{{{','.join(parts)}}}".encode("ascii")
