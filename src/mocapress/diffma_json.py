@@ -26,6 +26,16 @@ from mocapress.model import Clip, Column, Skeleton
 
 SUFFIXES = (".diffma.json", ".diffma.json.xz")
 _XZ = b"\xfd7zXZ\x00"
+_FOR_TEXT = [
+    {
+        "id": lzma.FILTER_LZMA2,
+        "preset": 9 | lzma.PRESET_EXTREME,
+        "dict_size": 1 << 26,
+        "lc": 4,
+        "lp": 0,
+        "pb": 0,
+    }
+]
 # Texts above this size, and decoders that want more memory, are refused.
 _MOST_TEXT = 1 << 28
 _MOST_MEMORY = 1 << 27
@@ -160,8 +170,7 @@ def clip_to_json(clip: Clip, codec: DiffMA, *, layout: bytes = b"") -> bytes:
 
 def named(name: str, text: bytes) -> bytes:
     """Give JSON text as a file of this name holds it: packed where it ends in ``.xz``."""
-    packed = name.lower().endswith(".xz")
-    return lzma.compress(text, preset=9 | lzma.PRESET_EXTREME) if packed else text
+    return lzma.compress(text, filters=_FOR_TEXT) if name.lower().endswith(".xz") else text
 
 
 def open_json(data: bytes | memoryview) -> Document:

@@ -15,7 +15,7 @@ _TABLE_BITS = 24.0
 CHANNEL_BOUNDS = (1e-9, *(float(f"{2 ** (k / 4):.3g}") for k in range(-8, 37)))
 # Of the paper, section 3.4.
 FILE_BOUNDS = tuple(2.0**k for k in range(7))
-# Higher ones amplify the error of what they continue; measured, none above 2 is ever worth it.
+# Higher ones amplify the errors of what they continue even more.
 AUTO_ORDERS = (0, 1, 2)
 
 
