@@ -75,8 +75,11 @@ def _statistics(rows: list[Row], key: str, published: Sequence[Sequence[float]])
     lines = []
     for bound, theirs in zip(BOUNDS, published, strict=True):
         values = np.array([row[key] for row in by_codec[f"β = {bound:g}"]])
-        finite = values[np.isfinite(values)]
-        ours = [finite.mean(), finite.std(), values.min()]
+        values = values[np.isfinite(values)]  # a clip without error has no PSNR
+        if not len(values):
+            lines.append([f"{bound:g}", *[""] * len(_STATISTICS)])
+            continue
+        ours = [values.mean(), values.std(), values.min()]
         ours += [np.percentile(values, part) for part in (1, 25, 50, 75, 99)]
         ours.append(values.max())
         pairs = zip(ours, theirs, strict=True)
