@@ -1,0 +1,149 @@
+const FRAMES = 240; // that are looked at, spread over the clip
+const USUAL_HEIGHT = 1.7;
+const UPPER = /head|neck|skull|face/i;
+const LOWER = /foot|toe|ankle|heel/i;
+const AXES = [
+  [1, 1],
+  [2, 1],
+  [0, 1],
+  [1, -1],
+  [2, -1],
+  [0, -1],
+];
+
+/**
+ * @typedef {Object} Bearings where a clip stands, found from its motion
+ * @property {[number, number]} up axis (0 to 2) and sign
+ * @property {number} scale by which lengths are multiplied, so that a figure is about 1.7 high
+ * @property {number} floor height of the floor along `up`, in the file's units
+ * @property {number[]} centre middle of the way, on the floor; after turning and scaling
+ * @property {number} reach how far the motion goes from there
+ */
+
+/**
+ * Find what other players are told by hand: scale, up axis, floor and extent.
+ *
+ * @param {Float32Array} positions (F, P, 3)
+ * @param {number} points P
+ * @param {string[]} names of the joints, the first of the points
+ * @param {[number, number]} [given] the up axis, where it is known
+ * @returns {Bearings}
+ */
+export function findBearings(positions, points, names, given) {
+  const frames = sampled(positions, points);
+  const up = given ?? upAxis(frames, names);
+  const sizes = frames.map((frame) => Math.max(...[0, 1, 2].map((axis) => extent(frame, axis))));
+  const size = quantile(sizes, 0.75) || 1;
+  const scale = USUAL_HEIGHT / size;
+  const heights = frames.map((frame) => lowest(frame, up));
+  const floor = quantile(heights, 0.05) || 0;
+  const turn = turnUp(up);
+  const low = [Infinity, Infinity];
+  const high = [-Infinity, -Infinity];
+  for (const frame of frames) {
+    const root = turn(frame[0], frame[1], frame[2]);
+    [root[0], root[2]].forEach((value, k) => {
+      low[k] = Math.min(low[k], value);
+      high[k] = Math.max(high[k], value);
+    });
+  }
+  const middle = low.map((value, k) => (Number.isFinite(value) ? (value + high[k]) / 2 : 0));
+  const way = Math.hypot(high[0] - low[0], high[1] - low[1]) * scale;
+  return {
+    up,
+    scale,
+    floor,
+    centre: [middle[0] * scale, 0, middle[1] * scale],
+    reach: Number.isFinite(way) ? way / 2 : 0,
+  };
+}
+
+/** The turn that leads an up axis to +y, keeping the hand: (x, y, z) to a new [x, y, z]. */
+export function turnUp([axis, sign]) {
+  if (axis === 1) return sign > 0 ? (x, y, z) => [x, y, z] : (x, y, z) => [x, -y, -z];
+  if (axis === 2) return sign > 0 ? (x, y, z) => [x, z, -y] : (x, y, z) => [x, -z, y];
+  return sign > 0 ? (x, y, z) => [-y, x, z] : (x, y, z) => [y, -x, z];
+}
+
+/** Name of an up axis: `+z`. */
+export function axisName([axis, sign]) {
+  return `${sign > 0 ? "+" : "−"}${"xyz"[axis]}`;
+}
+
+/** The up axis that follows, for one who chooses by hand. */
+export function nextUp([axis, sign]) {
+  const here = AXES.findIndex(([a, s]) => a === axis && s === sign);
+  return AXES[(here + 1) % AXES.length];
+}
+
+function sampled(positions, points) {
+  const width = 3 * points;
+  const count = width ? positions.length / width : 0;
+  const step = Math.max(1, count / FRAMES);
+  const frames = [];
+  for (let at = 0; at < count; at += step) {
+    const frame = positions.subarray(Math.floor(at) * width, (Math.floor(at) + 1) * width);
+    if (frame.every(Number.isFinite)) frames.push(frame);
+  }
+  return frames;
+}
+
+/**
+ * From feet to head, where the names tell; else where figures are long and wander little. Files
+ * have y or z up, so that x is taken only where it is plain.
+ */
+function upAxis(frames, names) {
+  const towards = [0, 0, 0];
+  const upper = indices(names, UPPER);
+  const lower = indices(names, LOWER);
+  const named = upper.length > 0 && lower.length > 0;
+  for (const frame of frames) {
+    for (let axis = 0; axis < 3; axis++) {
+      towards[axis] += named
+        ? mean(frame, upper, axis) - mean(frame, lower, axis)
+        : extent(frame, axis);
+    }
+  }
+  if (!named) {
+    const travel = [0, 1, 2].map((axis) => frames.length * range(frames.map((f) => f[axis])));
+    [0, 1, 2].forEach((axis) => (towards[axis] -= travel[axis]));
+    const axis = towards[2] > 1.2 * towards[1] ? 2 : 1;
+    return [axis, 1];
+  }
+  const lengths = towards.map(Math.abs);
+  const axis = lengths.indexOf(Math.max(...lengths));
+  return [axis, towards[axis] < 0 ? -1 : 1];
+}
+
+function indices(names, pattern) {
+  return [...names.keys()].filter((i) => pattern.test(names[i]));
+}
+
+function mean(frame, joints, axis) {
+  return joints.reduce((sum, joint) => sum + frame[3 * joint + axis], 0) / joints.length;
+}
+
+function extent(frame, axis) {
+  let low = Infinity;
+  let high = -Infinity;
+  for (let i = axis; i < frame.length; i += 3) {
+    low = Math.min(low, frame[i]);
+    high = Math.max(high, frame[i]);
+  }
+  return high - low;
+}
+
+function lowest(frame, [axis, sign]) {
+  let low = Infinity;
+  for (let i = axis; i < frame.length; i += 3) low = Math.min(low, sign * frame[i]);
+  return low;
+}
+
+function range(values) {
+  return values.length ? Math.max(...values) - Math.min(...values) : 0;
+}
+
+function quantile(values, share) {
+  const sorted = [...values].sort((a, b) => a - b);
+  return sorted[Math.floor(share * (sorted.length - 1))];
+}
