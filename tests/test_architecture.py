@@ -18,7 +18,7 @@ ROWS = [
     {"convert", "diffma_json", "trained"},
     {"restore"},
     {"api"},
-    {"describe", "bench"},
+    {"describe", "bench", "viewer"},
     {"cli"},
 ]
 HEIGHT = {box: row for row, boxes in enumerate(ROWS) for box in boxes}

@@ -18,6 +18,7 @@ const AXES = [
  * @property {number} floor height of the floor along `up`, in the file's units
  * @property {number[]} centre middle of the way, on the floor; after turning and scaling
  * @property {number} reach how far the motion goes from there
+ * @property {number} facing angle about +y of where the figure looks at first, 0 along +z
  */
 
 /**
@@ -55,6 +56,7 @@ export function findBearings(positions, points, names, given) {
     floor,
     centre: [middle[0] * scale, 0, middle[1] * scale],
     reach: Number.isFinite(way) ? way / 2 : 0,
+    facing: frames.length ? facing(frames[0], names, turn) : 0,
   };
 }
 
@@ -113,6 +115,22 @@ function upAxis(frames, names) {
   const lengths = towards.map(Math.abs);
   const axis = lengths.indexOf(Math.max(...lengths));
   return [axis, towards[axis] < 0 ? -1 : 1];
+}
+
+/** From its left to its right side, and from there to the front, where the names tell. */
+function facing(frame, names, turn) {
+  const place = new Map(names.map((name, i) => [name.toLowerCase(), i]));
+  const across = [0, 0, 0];
+  for (const [name, left] of place) {
+    const other = name.includes("left") ? name.replace("left", "right") : name.replace(/^l/, "r");
+    const right = other === name ? undefined : place.get(other);
+    if (right === undefined) continue;
+    for (let axis = 0; axis < 3; axis++) {
+      across[axis] += frame[3 * right + axis] - frame[3 * left + axis];
+    }
+  }
+  const [x, , z] = turn(...across);
+  return x || z ? Math.atan2(z, -x) : 0;
 }
 
 function indices(names, pattern) {

@@ -44,20 +44,20 @@ export function parseBvh(bytes) {
 function readRows(scanner, columns, frames) {
   const rows = new Rows(columns);
   while (scanner.toContent()) {
-    if (rows.count === frames) throw rowError(scanner, rows, `${frames} frames, as declared`);
+    if (rows.count === frames) throw rowError(scanner, frames + 1, `${frames} frames, as declared`);
     const first = rows.begin();
     for (let column = 0; column < columns; column++) {
       const value = scanner.number();
-      if (Number.isNaN(value)) throw rowError(scanner, rows, `${columns} numbers on a line`);
+      if (Number.isNaN(value)) throw rowError(scanner, rows.count, `${columns} numbers on a line`);
       rows.values[first + column] = value;
     }
-    if (!scanner.lineEnds()) throw rowError(scanner, rows, `${columns} numbers on a line`);
+    if (!scanner.lineEnds()) throw rowError(scanner, rows.count, `${columns} numbers on a line`);
   }
   return rows;
 }
 
-function rowError(scanner, rows, expected) {
-  return new FileError(`frame ${Math.max(1, rows.count)} cannot be read`, {
+function rowError(scanner, frame, expected) {
+  return new FileError(`frame ${Math.max(1, frame)} cannot be read`, {
     line: scanner.line,
     expected,
     found: scanner.found,

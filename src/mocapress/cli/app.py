@@ -232,6 +232,48 @@ def convert(
     )
 
 
+@app.command()
+def view(
+    files: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Motion files; of two, the second is compared with the first."),
+    ] = None,
+    export: Annotated[
+        Path | None,
+        typer.Option("--export", help="Write the page to this file instead.", metavar="PAGE.html"),
+    ] = None,
+    lossless: Annotated[
+        bool, typer.Option("--lossless", help="Export exact values, not DiffMA.")
+    ] = False,
+    max_error: Annotated[
+        float,
+        typer.Option("--max-error", help="Of an exported value, in the file's units.", min=1e-12),
+    ] = 0.01,
+    asf: Asf = None,
+    port: Annotated[
+        int, typer.Option("--port", help="Port on 127.0.0.1; 0 takes a free one.", min=0, max=65535)
+    ] = 0,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
+    ] = True,
+    force: Force = False,
+    debug: Debug = False,
+) -> None:
+    """Play motion files in the browser, one beside the other; or write a page that does."""
+    from mocapress.cli.view import view_files
+
+    view_files(
+        files or [],
+        export=export,
+        lossless=lossless,
+        max_error=max_error,
+        asf=asf,
+        port=port,
+        browser=browser,
+        force=force,
+    )
+
+
 @bench_app.command("lossless")
 def bench_lossless(
     corpus: Annotated[

@@ -58,6 +58,17 @@ class Clip:
         """Number of channels, C."""
         return len(self.columns)
 
+    def _repr_html_(self) -> str | None:
+        """Play the clip in a notebook.
+
+        The model draws nothing itself: whoever can announces it as ``mocapress.display``.
+        """
+        from importlib.metadata import entry_points
+
+        for offer in entry_points(group="mocapress.display", name="html"):
+            return str(offer.load()(self)) if self.frames else None
+        return None
+
     def with_values(self, values: NDArray[np.float64]) -> Self:
         """Give the same clip with other values, (F', C)."""
         return replace(self, values=np.ascontiguousarray(values, dtype=np.float64))

@@ -1,0 +1,81 @@
+"""Serves one page to this machine's browser, and nothing else to nobody else."""
+
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+
+from mocapress.version import __version__
+
+ADDRESS = "127.0.0.1"
+_PATIENCE = 30.0  # seconds for a client to say what it wants
+
+
+class PageServer(ThreadingHTTPServer):
+    """A server on the loopback interface that answers ``GET /`` with one document.
+
+    Parameters
+    ----------
+    document
+        The page, HTML.
+    policy
+        Its content security policy.
+    port
+        0 takes a free one.
+
+    Raises
+    ------
+    OSError
+        When the port is taken.
+
+    """
+
+    def __init__(self, document: str, policy: str, port: int = 0) -> None:
+        super().__init__((ADDRESS, port), _Handler)
+        self.content = document.encode()
+        self.policy = policy
+        # Another site can have its name point to 127.0.0.1; its pages then come with this name.
+        self.hosts = {f"{name}:{self.server_port}" for name in (ADDRESS, "localhost")}
+
+    @property
+    def url(self) -> str:
+        """Where the page is."""
+        return f"http://{ADDRESS}:{self.server_port}/"
+
+
+class _Handler(BaseHTTPRequestHandler):
+    server: PageServer
+    timeout = _PATIENCE
+    server_version = f"mocapress/{__version__}"
+    sys_version = ""
+
+    def do_GET(self) -> None:
+        self._answer(with_content=True)
+
+    def do_HEAD(self) -> None:
+        self._answer(with_content=False)
+
+    def _answer(self, *, with_content: bool) -> None:
+        if self.headers.get("Host", "") not in self.server.hosts:
+            self.send_error(HTTPStatus.FORBIDDEN, "this server answers to 127.0.0.1 only")
+            return
+        if self.path.partition("?")[0] != "/":
+            self.send_error(HTTPStatus.NOT_FOUND, "there is one page here")
+            return
+        self.send_response(HTTPStatus.OK)
+        headers = {
+            "Content-Type": "text/html; charset=utf-8",
+            "Content-Length": str(len(self.server.content)),
+            "Content-Security-Policy": f"{self.server.policy}; frame-ancestors 'none'",
+            "Cross-Origin-Opener-Policy": "same-origin",
+            "Cross-Origin-Resource-Policy": "same-origin",
+            "Referrer-Policy": "no-referrer",
+            "X-Content-Type-Options": "nosniff",
+            "Cache-Control": "no-store",
+        }
+        for name, value in headers.items():
+            self.send_header(name, value)
+        self.end_headers()
+        if with_content:
+            self.wfile.write(self.server.content)
+
+    def log_message(self, format: str, *args: object) -> None:  # noqa: A002
+        """Say nothing: requests are the browser's own."""

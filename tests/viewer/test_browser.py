@@ -1,0 +1,273 @@
+"""The page in a real browser: what a user sees and does."""
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from browsing import LAPTOP, PHONE, Visit, chromium, coloured
+from playwright.sync_api import Browser
+
+import mocapress as mp
+from mocapress.viewer import embed, page
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with chromium() as started:
+        yield started
+
+
+def _visit(browser: Browser, **settings: Any) -> Iterator[Visit]:
+    width, height = settings.pop("size", LAPTOP)
+    context = browser.new_context(viewport={"width": width, "height": height}, **settings)
+    visit = Visit(context.new_page())
+    yield visit
+    url = visit.page.url
+    context.close()
+    assert visit.logged == []
+    assert set(visit.asked) <= {url, "about:srcdoc"}
+
+
+@pytest.fixture
+def visit(browser: Browser) -> Iterator[Visit]:
+    yield from _visit(browser)
+
+
+@pytest.fixture
+def phone(browser: Browser) -> Iterator[Visit]:
+    yield from _visit(browser, size=PHONE, has_touch=True, is_mobile=True, device_scale_factor=2)
+
+
+def clip(samples: Path, name: str) -> dict[str, Any]:
+    return embed.file(samples / name)
+
+
+def noisy(samples: Path, name: str) -> dict[str, Any]:
+    made = mp.read(samples / name)
+    noise = np.sin(np.arange(made.values.size)).reshape(made.values.shape)
+    return embed.exact(made.with_values(made.values + 3 * noise), "decoded")
+
+
+def test_an_exported_page_plays_from_disk(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    visit.open(page.document([clip(samples, "cmu_01_01.amc")]), tmp_path)
+    visit.until("document.body.dataset.frame > 5")
+    visit.page.keyboard.press(" ")
+    frame = visit.frame
+    visit.page.wait_for_timeout(200)
+    assert visit.frame == frame
+    assert visit.text("#frame") == f"{frame + 1} / 2751"
+    assert visit.text("#time").endswith("/ 22.93 s")
+    assert visit.names() == ["cmu_01_01.amc"]
+
+
+def test_the_figure_moves_with_the_frame(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    visit.open(page.document([clip(samples, "mocapbank.bvh")]), tmp_path)
+    visit.seek(0)
+    first = visit.pixels()
+    assert coloured(first, 2) > 500
+    visit.seek(30)
+    later = visit.pixels()
+    assert (np.abs(later - first).max(axis=-1) > 0.2).sum() > 500
+    visit.seek(0)
+    again = visit.pixels()
+    assert (np.abs(again - first).max(axis=-1) > 0.2).sum() == 0
+
+
+def test_the_timeline_scrubs(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    visit.open(page.document([clip(samples, "mocapbank.bvh")]), tmp_path)
+    visit.page.keyboard.press(" ")
+    box = visit.page.locator("#timeline").bounding_box()
+    assert box is not None
+    mouse, middle = visit.page.mouse, box["y"] + box["height"] / 2
+    mouse.move(box["x"] + box["width"] / 4, middle)
+    mouse.down()
+    assert abs(visit.frame - 454 / 4) < 5
+    mouse.move(box["x"] + box["width"] / 2, middle, steps=4)
+    mouse.up()
+    assert abs(visit.frame - 454 / 2) < 2
+
+
+def test_the_mouse_turns_the_camera(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    visit.open(page.document([clip(samples, "mocapbank.bvh")]), tmp_path)
+    visit.seek(0)
+    before = visit.pixels()
+    visit.page.mouse.move(400, 300)
+    visit.page.mouse.down()
+    visit.page.mouse.move(600, 300, steps=4)
+    visit.page.mouse.up()
+    turned = visit.pixels()
+    assert (np.abs(turned - before).max(axis=-1) > 0.2).sum() > 500
+    visit.page.mouse.wheel(0, 600)
+    visit.page.wait_for_timeout(300)
+    assert coloured(visit.pixels(), 2) < coloured(turned, 2)
+
+
+def test_keys_work_and_are_listed(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    visit.open(page.document([clip(samples, "cmu_01_01.amc")]), tmp_path)
+    keys = visit.page.keyboard
+    keys.press("End")
+    assert visit.frame == 2750
+    keys.press("ArrowLeft")
+    keys.press("Shift+ArrowLeft")
+    assert visit.frame == 2750 - 1 - 120
+    keys.press("Home")
+    keys.press("+")
+    assert visit.page.locator("#speed").input_value() == "2"
+    theme = visit.page.evaluate("document.documentElement.dataset.theme")
+    keys.press("d")
+    assert visit.page.evaluate("document.documentElement.dataset.theme") != theme
+    assert not visit.page.locator("#keys").is_visible()
+    keys.press("?")
+    listed = visit.page.locator("#bindings kbd").all_inner_texts()
+    assert {"Space", "←", "→", "Home", "End", "−", "+", "D", "?"} <= set(listed)
+    keys.press("Escape")
+    assert not visit.page.locator("#keys").is_visible()
+
+
+def test_a_decoded_clip_is_compared(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    name = "cmu_01_01.amc"
+    visit.open(page.document([clip(samples, name), noisy(samples, name)]), tmp_path)
+    visit.seek(3)
+    assert " cm" in visit.text("#worst")
+    assert visit.page.locator("#cells span").count() == 0
+    visit.page.keyboard.press("e")  # colours off: original blue, decoded green
+    visit.page.keyboard.press("o")
+    visit.page.wait_for_timeout(200)
+    assert visit.page.locator("#cells span").all_inner_texts() == [name, "decoded"]
+    pixels = visit.pixels()
+    half = pixels.shape[1] // 2
+    assert coloured(pixels[:, :half], 2) > 500
+    assert coloured(pixels[:, half:], 1) > 500
+    assert coloured(pixels[:, :half], 1) == 0
+    without = visit.pixels()
+    visit.page.keyboard.press("e")
+    assert coloured(visit.pixels(), 0) > coloured(without, 0)  # amber to red, where it errs
+
+
+def test_exact_copies_differ_by_nothing(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    same = clip(samples, "freebvh.bvh")
+    visit.open(page.document([same, same]), tmp_path)
+    visit.until("document.querySelector('#worst').textContent === '0 units'")
+
+
+def test_clips_stand_in_a_grid(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    names = ["cmu_01_01.amc", "freebvh.bvh", "mocapbank.bvh"]
+    visit.open(page.document([clip(samples, name) for name in names]), tmp_path)
+    visit.until("document.querySelectorAll('#cells span').length === 3")
+    assert visit.names() == names
+    assert all("up +y" in facts for facts in visit.page.locator("#legend small").all_inner_texts())
+
+
+def test_the_inspector_shows_a_joints_channels(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    visit.open(page.document([clip(samples, "cmu_01_01.amc")]), tmp_path)
+    visit.seek(0)
+    joints = visit.page.locator("#inspector select")
+    joints.select_option("2")
+    assert visit.page.locator(".plot b").all_inner_texts() == [
+        "x rotation",
+        "y rotation",
+        "z rotation",
+    ]
+    made = mp.read(samples / "cmu_01_01.amc")
+    column = [column.name for column in made.columns].index("lfemur.rx")
+    shown = float(visit.page.locator(".plot output").first.inner_text())
+    assert shown == pytest.approx(made.values[0, column], rel=1e-3)
+    visit.page.locator("#inspector input").fill("HEAD")
+    assert joints.locator("option").all_inner_texts() == ["head"]
+
+
+def test_dropped_files_play(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    visit.open(page.document([]), tmp_path)
+    assert visit.page.locator(".welcome").is_visible()
+    visit.drop(samples / "freebvh.bvh")
+    visit.until("document.body.dataset.frame > 0")
+    visit.drop(samples / "cmu_01_01.amc", samples / "cmu_01_01.asf")
+    visit.until("document.querySelector('#frame').textContent.endsWith('2751')")
+    assert visit.names() == ["cmu_01_01.amc"]
+    visit.drop(samples / "mocapbank.bvh", zone="add")
+    visit.until("document.querySelectorAll('#cells span').length === 2")
+    assert visit.names() == ["cmu_01_01.amc", "mocapbank.bvh"]
+    visit.drop(samples / "cmu_01_01.amc")
+    visit.until("document.querySelector('.notice')?.textContent.includes('no skeleton')")
+
+
+def test_a_broken_file_is_told_of(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    visit.open(page.document([clip(samples, "freebvh.bvh")]), tmp_path)
+    broken = (samples / "mocapbank.bvh").read_bytes().replace(b"JOINT", b"JOINTS", 1)
+    (tmp_path / "broken.bvh").write_bytes(broken)
+    with pytest.raises(mp.FormatError) as error:
+        mp.read(tmp_path / "broken.bvh")
+    visit.drop(tmp_path / "broken.bvh")
+    visit.until("document.querySelector('.notice') !== null")
+    notice = visit.text(".notice")
+    assert notice.startswith(f"broken.bvh, line {error.value.line}: {error.value.what}; expected ")
+    assert visit.names() == ["freebvh.bvh"]  # what was there goes on playing
+    visit.page.locator(".notice button").click()
+    assert visit.page.locator(".notice").count() == 0
+
+
+def test_markup_in_names_is_text(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    markup = "<img src=x onerror=alert(1)></script><b>"
+    made = clip(samples, "freebvh.bvh") | {"name": markup}
+    for joint in made["exact"]["skeleton"]["joints"]:
+        joint["name"] = markup
+    visit.open(page.document([made, made, made], title=markup), tmp_path)
+    visit.until("document.querySelectorAll('#cells span').length === 3")
+    assert visit.names() == [markup] * 3
+    assert visit.page.locator("option").first.inner_text() == markup
+    visit.drop((f"{markup}.bvh", b"nothing"))
+    visit.until("document.querySelector('.notice') !== null")
+    assert visit.text(".notice").startswith(f"{markup}.bvh")
+    assert visit.page.locator("img").count() == 0
+    assert visit.page.title() == markup
+
+
+@pytest.mark.parametrize("files", [["cmu_01_01.amc"], ["cmu_01_01.amc", "freebvh.bvh"]])
+def test_everything_fits_a_phone(
+    phone: Visit, samples: Path, tmp_path: Path, files: list[str]
+) -> None:
+    phone.open(page.document([clip(samples, name) for name in files]), tmp_path)
+    phone.seek(0)
+    assert phone.page.evaluate("document.documentElement.scrollWidth") <= PHONE[0]
+    for selector in ("nav button", "footer button", "#timeline", "#speed", ".camera #follow"):
+        for found in phone.page.locator(selector).all():
+            box = found.bounding_box()
+            assert box is not None
+            assert box["x"] >= 0
+            assert box["x"] + box["width"] <= PHONE[0]
+            assert box["y"] + box["height"] <= PHONE[1]
+    assert coloured(phone.pixels(), 2) > 500
+    phone.page.locator("#show-inspector").tap()
+    assert phone.page.locator(".plot").count() == 6
+
+
+def test_the_served_page_plays(visit: Visit, samples: Path) -> None:
+    command = "from mocapress.cli import main; main()"
+    words = ["view", "--no-browser", str(samples / "cmu_01_01.amc"), str(samples / "freebvh.bvh")]
+    process = subprocess.Popen(
+        [sys.executable, "-c", command, *words], stdout=subprocess.PIPE, text=True
+    )
+    try:
+        assert process.stdout is not None
+        url = process.stdout.readline().split()[0]
+        assert url.startswith("http://127.0.0.1:")
+        visit.page.goto(url)
+        visit.until("document.body.dataset.frame > 3")
+        assert visit.names() == ["cmu_01_01.amc", "freebvh.bvh"]
+    finally:
+        process.terminate()
+        process.communicate(timeout=30)
+
+
+def test_a_clip_plays_in_a_notebook(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    markup = mp.read(samples / "freebvh.bvh")._repr_html_()
+    visit.open(f"<!doctype html><link rel=icon href=data:,><h1>Notebook</h1>{markup}", tmp_path)
+    inner = visit.page.frame_locator("iframe")
+    inner.locator("#frame", has_text="/ 69").wait_for()
+    first = inner.locator("#frame").inner_text()
+    visit.page.wait_for_timeout(500)
+    assert inner.locator("#frame").inner_text() != first

@@ -1,0 +1,111 @@
+"""The document: whole, closed to the world, and safe against what is in the motion."""
+
+import base64
+import hashlib
+import json
+import re
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import mocapress as mp
+from mocapress.cli.app import app
+from mocapress.viewer import embed, page
+
+
+def embedded(document: str) -> list[dict[str, object]]:
+    (text,) = re.findall(r'id="clips">(.*?)</script>', document, re.DOTALL)
+    clips: list[dict[str, object]] = json.loads(text)["clips"]
+    return clips
+
+
+def test_exact_values_are_exact(samples: Path) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")
+    (made,) = embedded(page.document([embed.exact(clip, "walk.amc")]))
+    content = made["exact"]
+    assert isinstance(content, dict)
+    values = np.frombuffer(base64.b64decode(content["values"]), "<f8")
+    np.testing.assert_array_equal(values.reshape(clip.channels, clip.frames).T, clip.values)
+    assert len(content["skeleton"]["columns"]) == clip.channels
+
+
+def test_the_policy_names_every_script_and_style_of_the_page() -> None:
+    document = page.document([])
+    inline = re.findall(
+        r'<(?:script type="(?:importmap|module)"|style)>(.*?)</(?:script|style)>',
+        document,
+        re.DOTALL,
+    )
+    assert len(inline) == 3
+    for text in inline:
+        digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+        assert f"'sha256-{digest}'" in page.policy()
+    assert "unsafe" not in page.policy()
+    assert "http" not in page.policy()
+    assert page.policy() in document
+
+
+def test_every_module_is_in_the_page() -> None:
+    (imports,) = re.findall(r'<script type="importmap">(.*?)</script>', page.document([]))
+    modules = {
+        name: base64.b64decode(url.partition(",")[2]).decode()
+        for name, url in json.loads(imports)["imports"].items()
+    }
+    sources = {f"page/{path.name}" for path in (page.SOURCES / "page").glob("*.js")}
+    assert sources <= set(modules)
+    for text in modules.values():
+        for target in re.findall(
+            r'^(?:import|export)\b[^;]*?from\s*"([^"]+)";', text, re.MULTILINE
+        ):
+            assert target in modules
+
+
+def test_motion_cannot_leave_its_element() -> None:
+    text = "</script><script>alert(1)</script><!--"
+    document = page.document([{"name": text}], title=text)
+    assert document.count("<script") == 3
+    assert embedded(document) == [{"name": text}]
+    assert "<title></script>" not in document
+
+
+def test_exporting_never_overwrites_unasked(samples: Path, tmp_path: Path) -> None:
+    target = tmp_path / "page.html"
+    words = ["view", str(samples / "freebvh.bvh"), "--lossless", "--export", str(target)]
+    assert CliRunner().invoke(app, words).exit_code == 0
+    written = target.read_bytes()
+    assert b"freebvh.bvh" in written
+    result = CliRunner().invoke(app, words)
+    assert result.exit_code == 1
+    assert "--force" in result.stderr
+    assert target.read_bytes() == written
+
+
+@pytest.mark.parametrize("content", [b"", b"HIERARCHY\nROOT", b"\x00" * 1000])
+def test_broken_files_are_told_of_before_anything_is_served(tmp_path: Path, content: bytes) -> None:
+    file = tmp_path / "broken.bvh"
+    file.write_bytes(content)
+    result = CliRunner().invoke(app, ["view", str(file)])
+    assert result.exit_code == 1
+    assert str(file) in result.stderr
+    assert "Traceback" not in result.output
+
+
+def test_a_compressed_clip_is_shown(samples: Path, tmp_path: Path) -> None:
+    file = tmp_path / "clip.bvh.mcz"
+    file.write_bytes(mp.compress(samples / "freebvh.bvh"))
+    made = embed.file(file)
+    assert made["exact"]["values"] == embed.file(samples / "freebvh.bvh")["exact"]["values"]
+
+
+def test_the_wheel_carries_the_page() -> None:
+    root = Path(__file__).parents[2]
+    wheels = sorted((root / "dist").glob("mocapress-*.whl"))
+    if not wheels:
+        pytest.skip("no wheel; `make wheel` makes one")
+    names = zipfile.ZipFile(wheels[-1]).namelist()
+    for path in ("page/main.js", "page/index.html", "vendor/three/LICENSE", "diffma/diffma.js"):
+        assert f"mocapress/viewer/web/{path}" in names
+    assert not any("/test" in name for name in names)

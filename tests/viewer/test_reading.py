@@ -1,0 +1,93 @@
+"""What the page reads in the browser is what mocapress reads: values, places, and errors."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import mocapress as mp
+from mocapress.formats.files import find_asf
+
+SCRIPT = Path(__file__).parents[2] / "viewer/tests/positions.mjs"
+SAMPLES = Path(__file__).parents[2] / "samples"
+
+
+def read_by_page(*paths: Path) -> Any:
+    node = shutil.which("node")
+    if node is None:
+        reason = "no node (Debian: apt-get install nodejs); `make browser` installs it as root"
+        if os.environ.get("CI"):
+            pytest.fail(reason)
+        pytest.skip(reason)
+    done = subprocess.run([node, SCRIPT, *paths], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def check(path: Path) -> None:
+    beside = find_asf(path) if path.suffix.lower() == ".amc" else None
+    (made,) = read_by_page(path, *([beside] if beside else []))["clips"]
+    clip = mp.read(path)
+    assert made["names"] == [column.name for column in clip.columns]
+    assert made["length"] == clip.frames
+    assert made["frameTime"] == (float(clip.frame_time) if clip.frame_time is not None else None)
+    np.testing.assert_array_equal(np.array(made["values"]).T, clip.values[made["frames"]])
+    if clip.skeleton:
+        some = clip.with_values(clip.values[made["frames"]])
+        places = mp.positions(some, end_sites=True)
+        np.testing.assert_allclose(
+            np.array(made["positions"]).reshape(places.shape), places, rtol=0, atol=1e-9
+        )
+
+
+@pytest.mark.parametrize("name", ["cmu_01_01.amc", "freebvh.bvh", "mocapbank.bvh"])
+def test_samples(samples: Path, name: str) -> None:
+    check(samples / name)
+
+
+@pytest.mark.corpus
+def test_clips_of_all_kinds(corpus_clips: list[Path]) -> None:
+    for path in corpus_clips[::12]:
+        try:
+            mp.read(path)
+        except mp.MocapressError:
+            assert read_by_page(path)["errors"]
+        else:
+            check(path)
+
+
+BVH = (SAMPLES / "mocapbank.bvh").read_bytes()
+BROKEN = {
+    "no_motion.bvh": BVH[: BVH.index(b"MOTION")],
+    "number.bvh": BVH[:-40] + b" x" + BVH[-38:],
+    "short_row.bvh": BVH.rstrip()[:-30],
+    "brace.bvh": BVH.replace(b"}", b"", 1),
+    "channels.bvh": BVH.replace(b"CHANNELS 3", b"CHANNELS 4", 1),
+    "offset.bvh": BVH.replace(b"OFFSET ", b"OFFSET x", 1),
+    "frames.bvh": re.sub(rb"Frames:\s+455", b"Frames: 45500", BVH),
+    "more_rows.bvh": re.sub(rb"Frames:\s+455", b"Frames: 4", BVH),
+    "frame_time.bvh": BVH.replace(b"Frame Time:", b"Frame Tim:"),
+    "empty.bvh": b"",
+    "empty.amc": b"",
+    "bone.amc": b"1\nroot 1 2 3 4 5 6\nhip 1\n2\nroot 1 2 3 4 5 6\nhop 1\n",
+    "few.amc": b"1\nroot 1 2 3 4 5 6\n2\nroot 1 2 3 4 5\n",
+    "infinite.amc": b"1\nroot 1 2 3 4 5 6\n2\nroot 1 2 3 4 5 1e999\n",
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_errors_name_the_same_place(tmp_path: Path, name: str) -> None:
+    file = tmp_path / name
+    file.write_bytes(BROKEN[name])
+    with pytest.raises(mp.MocapressError) as error:
+        mp.read(file)
+    made = read_by_page(file)
+    assert made["clips"] == []
+    (message,) = made["errors"]
+    place = f"{name}, line {error.value.line}: " if error.value.line else f"{name}: "
+    assert message.startswith(f"{place}{error.value.what}"), (message, str(error.value))

@@ -1,0 +1,268 @@
+import { axisName } from "./bearings.js";
+import { speeds } from "./comparison.js";
+import { acceptFiles } from "./dropping.js";
+import { element } from "./element.js";
+import { embeddedClips } from "./embedded.js";
+import { Inspector } from "./inspector.js";
+import { listenToKeys } from "./keyboard.js";
+import { labelCells, legend, showKeys } from "./labels.js";
+import { lengthText } from "./lengths.js";
+import { Lineup } from "./lineup.js";
+import { Notices } from "./notice.js";
+import { Player } from "./player.js";
+import { message, readFiles } from "./reading.js";
+import { Take } from "./take.js";
+import { Timeline } from "./timeline.js";
+import { Viewport } from "./viewport.js";
+
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
+const MOST_CLIPS = 16;
+
+/** The page as a whole: what the controls do. */
+export class App {
+  constructor() {
+    this.at = (id) => document.getElementById(id);
+    this.notices = new Notices(this.at("notices"));
+    this.player = new Player();
+    this.lineup = new Lineup();
+    this.viewport = new Viewport(this.at("canvas"));
+    this.timeline = new Timeline(this.at("timeline"), this.player);
+    this.inspector = new Inspector(this.at("inspector"), this.player);
+    this.trails = true;
+    this.#wire();
+    this.#setTheme(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+    this.#toggleInspector(matchMedia("(min-width: 900px)").matches && innerHeight > 420);
+    this.#tick(performance.now());
+  }
+
+  /** Show the clips that the page carries. */
+  openEmbedded(text) {
+    const { clips, errors } = embeddedClips(text);
+    this.#open(clips, errors, "replace");
+    this.player.play(clips.length > 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches);
+  }
+
+  /** Show files; of a file that is broken, a message says what is wrong with it. */
+  openFiles(files, how) {
+    const { clips, errors } = readFiles(files);
+    this.#open(clips, errors, how);
+    if (clips.length) this.player.play(true);
+  }
+
+  #open(clips, errors, how) {
+    const takes = how === "add" ? [...this.lineup.takes] : [];
+    for (const clip of clips) {
+      try {
+        takes.push(new Take(clip));
+        if (clip.note) errors.push(`${clip.name}: ${clip.note}`);
+      } catch (error) {
+        errors.push(message(error, clip.name));
+      }
+    }
+    if (takes.length > MOST_CLIPS) errors.push(`only ${MOST_CLIPS} clips are shown at once`);
+    this.notices.show(errors);
+    if (takes.length) this.#show(takes.slice(0, MOST_CLIPS));
+    else if (!this.lineup.takes.length) document.body.classList.add("empty");
+  }
+
+  #show(takes) {
+    const { lineup } = this;
+    document.body.classList.remove("empty");
+    lineup.set(takes);
+    this.player.measure(lineup.longest.frames, lineup.longest.frameTime);
+    this.inspector.show(lineup.comparison ? takes : takes.slice(0, 1), lineup.colours);
+    this.#arrange();
+  }
+
+  /** Build the stages anew: after clips, the way of comparing or the up axis have changed. */
+  #arrange() {
+    const { lineup, viewport } = this;
+    viewport.show(lineup.stages());
+    const compared = lineup.comparison !== null;
+    document.body.classList.toggle("compared", compared);
+    this.at("mode").textContent = lineup.isOverlaid ? "Side by side" : "Overlay";
+    this.at("follow").setAttribute("aria-pressed", String(viewport.follows));
+    this.at("legend").replaceChildren(...legend(lineup));
+    this.#plot();
+    this.#applyTrails();
+    this.#changed();
+  }
+
+  #plot() {
+    const { lineup, timeline } = this;
+    if (!lineup.takes.length) return;
+    const { comparison, takes } = lineup;
+    const text = lengthText(takes[0].clip);
+    if (comparison) {
+      const curves = [
+        { values: comparison.worst, colour: "--error", fill: true },
+        { values: comparison.mean, colour: "--muted" },
+      ];
+      timeline.plot("largest error", curves, text);
+      this.at("worst").textContent = text(comparison.largest);
+      this.at("average").textContent = text(comparison.average);
+    } else {
+      const curves = [{ values: speeds(lineup.longest), colour: "--accent", fill: true }];
+      timeline.plot("mean speed", curves, (speed) => `${text(speed)}/s`);
+    }
+  }
+
+  /** Show the player's moment everywhere. */
+  #changed() {
+    const { player, lineup, viewport } = this;
+    lineup.paint(viewport.stages, player.time, this.inspector.chosen, viewport.mark);
+    for (const stage of viewport.stages) stage.show(player.time, viewport.follows);
+    viewport.dirty = true;
+    const { frame, frames, frameTime, time } = player;
+    this.at("frame").textContent = `${frame + 1} / ${frames}`;
+    this.at("time").textContent = `${time.toFixed(2)} / ${(frames * frameTime).toFixed(2)} s`;
+    this.at("play").setAttribute("aria-pressed", String(player.playing));
+    this.at("play").ariaLabel = player.playing ? "Pause" : "Play";
+    this.at("speed").value = String(player.speed);
+    document.body.dataset.frame = String(frame);
+  }
+
+  #tick(before) {
+    requestAnimationFrame((now) => {
+      // A frame's time can lie before that of its request; a hidden page gets none for long.
+      this.player.advance(Math.min(0.1, Math.max(0, now - before) / 1000));
+      this.viewport.render();
+      labelCells(this.at("cells"), this.lineup, this.viewport);
+      this.#tick(now);
+    });
+  }
+
+  #wire() {
+    const { player, at } = this;
+    const actions = {
+      play: () => player.play(),
+      back: () => player.step(-1),
+      forward: () => player.step(1),
+      mode: () => this.#toggleMode(),
+      follow: () => this.#toggleFollow(),
+      reframe: () => this.viewport.frame(),
+      "show-inspector": () => this.#toggleInspector(),
+      "close-inspector": () => this.#toggleInspector(false),
+      theme: () => this.#setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"),
+      help: () => this.#toggleHelp(),
+      "close-help": () => at("keys").close(),
+      open: () => at("replace-files").click(),
+      "open-first": () => at("replace-files").click(),
+      add: () => at("add-files").click(),
+      heat: () => this.#toggleErrors(),
+    };
+    for (const [id, act] of Object.entries(actions)) at(id).addEventListener("click", act);
+    at("speed").append(...SPEEDS.map((speed) => element("option", { value: String(speed) }, `${speed}×`)));
+    at("speed").addEventListener("change", () => player.setSpeed(Number(at("speed").value)));
+    player.addEventListener("change", () => this.#changed());
+    this.inspector.addEventListener("choose", () => this.#changed());
+    const parts = { veil: at("veil"), replace: at("replace-files"), add: at("add-files") };
+    acceptFiles(parts, (files, how) => this.openFiles(files, how));
+    const bindings = this.#bindings();
+    listenToKeys(bindings);
+    showKeys(at("bindings"), bindings);
+    this.#pickJoints();
+  }
+
+  /** @returns {import("./keyboard.js").Binding[]} */
+  #bindings() {
+    const { player } = this;
+    const second = () => Math.round(1 / player.frameTime);
+    const by = (direction) => (event) => player.step(direction * (event.shiftKey ? second() : 1));
+    return [
+      { keys: [" ", "k"], label: "Space", text: "play or pause", act: () => player.play() },
+      { keys: ["ArrowLeft", ","], label: "←", text: "a frame back; with Shift a second", act: by(-1) },
+      { keys: ["ArrowRight", "."], label: "→", text: "a frame on; with Shift a second", act: by(1) },
+      { keys: ["Home"], label: "Home", text: "first frame", act: () => player.seek(0) },
+      { keys: ["End"], label: "End", text: "last frame", act: () => player.step(player.frames) },
+      { keys: ["-", "["], label: "−", text: "slower", act: () => this.#changeSpeed(-1) },
+      { keys: ["+", "=", "]"], label: "+", text: "faster", act: () => this.#changeSpeed(1) },
+      { keys: ["o"], label: "O", text: "overlay or side by side", act: () => this.#toggleMode() },
+      { keys: ["e"], label: "E", text: "error as colour", act: () => this.#toggleErrors() },
+      { keys: ["c"], label: "C", text: "camera follows or stays", act: () => this.#toggleFollow() },
+      { keys: ["f", "r"], label: "F", text: "frame the figure anew", act: () => this.viewport.frame() },
+      { keys: ["u"], label: "U", text: "another axis up", act: () => this.#turnUp() },
+      { keys: ["t"], label: "T", text: "trail of the root", act: () => this.#toggleTrails() },
+      { keys: ["i"], label: "I", text: "inspector of channels", act: () => this.#toggleInspector() },
+      { keys: ["d"], label: "D", text: "dark or light", act: () => this.at("theme").click() },
+      { keys: ["?"], label: "?", text: "this list", act: () => this.#toggleHelp() },
+    ];
+  }
+
+  /** A click, or a tap, that is no drag chooses the joint under it. */
+  #pickJoints() {
+    const canvas = this.at("canvas");
+    let down = null;
+    canvas.addEventListener("pointerdown", (event) => (down = [event.clientX, event.clientY]));
+    canvas.addEventListener("pointerup", (event) => {
+      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
+      const box = canvas.getBoundingClientRect();
+      const { stage, point } = this.viewport.pick(event.clientX - box.left, event.clientY - box.top);
+      const take = this.viewport.stages[stage]?.takes[0];
+      if (point < 0 || (take !== this.lineup.takes[0] && !this.lineup.comparison)) return;
+      const joint = point < take.jointNames.length ? point : take.parents[point];
+      this.inspector.choose(joint);
+    });
+  }
+
+  #changeSpeed(by) {
+    const here = SPEEDS.indexOf(this.player.speed) + by;
+    this.player.setSpeed(SPEEDS[Math.min(SPEEDS.length - 1, Math.max(0, here))]);
+  }
+
+  #toggleMode() {
+    if (!this.lineup.comparison) return;
+    this.lineup.overlaid = !this.lineup.overlaid;
+    this.#arrange();
+  }
+
+  #toggleErrors() {
+    this.lineup.errorsShown = !this.lineup.errorsShown;
+    this.at("heat").setAttribute("aria-pressed", String(this.lineup.errorsShown));
+    this.#changed();
+  }
+
+  #toggleFollow() {
+    this.viewport.follows = !this.viewport.follows;
+    this.at("follow").setAttribute("aria-pressed", String(this.viewport.follows));
+    this.viewport.frame();
+    this.#changed();
+  }
+
+  #toggleTrails() {
+    this.trails = !this.trails;
+    this.#applyTrails();
+  }
+
+  #applyTrails() {
+    for (const stage of this.viewport.stages) stage.showTrails(this.trails);
+    this.viewport.dirty = true;
+  }
+
+  #turnUp() {
+    if (!this.lineup.figures.length) return;
+    this.lineup.turnUp();
+    this.#arrange();
+    this.notices.show([`up is ${axisName(this.lineup.takes[0].bearings.up)} now`]);
+  }
+
+  #toggleInspector(shown = this.at("inspector").hidden) {
+    this.at("inspector").hidden = !shown;
+    this.at("show-inspector").setAttribute("aria-pressed", String(shown));
+    this.inspector.draw();
+  }
+
+  #toggleHelp() {
+    const keys = this.at("keys");
+    if (keys.open) keys.close();
+    else keys.showModal();
+  }
+
+  #setTheme(theme) {
+    document.documentElement.dataset.theme = theme;
+    this.viewport.setTheme(theme);
+    this.timeline.plot(this.timeline.label, this.timeline.curves, this.timeline.text);
+    this.inspector.draw();
+    this.#changed();
+  }
+}

@@ -1,0 +1,46 @@
+/**
+ * Trace values over the width of a canvas; of many frames per pixel, the least and the largest.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {Float32Array|Float64Array} values (F,)
+ * @param {{left: number, top: number, width: number, height: number}} box
+ * @param {[number, number]} range at the bottom and the top of the box
+ */
+export function trace(context, values, box, [low, high]) {
+  const { left, top, width, height } = box;
+  const span = high - low || 1;
+  const y = (value) => top + height - ((value - low) / span) * height;
+  const last = Math.max(1, values.length - 1);
+  const pixels = Math.max(1, Math.floor(width));
+  context.beginPath();
+  if (values.length <= 2 * pixels) {
+    values.forEach((value, i) => context.lineTo(left + (i / last) * width, y(value)));
+  } else {
+    for (let pixel = 0; pixel <= pixels; pixel++) {
+      const begin = Math.floor((pixel / (pixels + 1)) * values.length);
+      const end = Math.max(begin + 1, Math.floor(((pixel + 1) / (pixels + 1)) * values.length));
+      const [least, most] = rangeOf(values.subarray(begin, end));
+      context.lineTo(left + pixel, y(least));
+      context.lineTo(left + pixel, y(most));
+    }
+  }
+}
+
+/** Least and largest of some values, those that are finite. */
+export function rangeOf(values) {
+  let low = Infinity;
+  let high = -Infinity;
+  for (const value of values) {
+    if (value < low) low = value;
+    if (value > high && value !== Infinity) high = value;
+  }
+  return low <= high ? [low, high] : [0, 0];
+}
+
+/** A number as short as can be read. */
+export function short(value) {
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size < 1e-3 || size >= 1e5) return value.toExponential(1).replace("e+", "e");
+  return String(Number(value.toPrecision(size >= 1 ? 4 : 3)));
+}

@@ -1,0 +1,14 @@
+import { App } from "./app.js";
+import { Notices } from "./notice.js";
+
+let app;
+try {
+  app = new App();
+} catch (error) {
+  // three.js gives no kind of error of its own to tell by.
+  document.body.classList.add("empty");
+  new Notices(document.getElementById("notices")).show([
+    `This page draws with WebGL, which this browser does not offer (${error.message}).`,
+  ]);
+}
+app?.openEmbedded(document.getElementById("clips").textContent);
