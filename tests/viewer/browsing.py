@@ -31,7 +31,7 @@ FLAGS = [
 ]
 LAPTOP = (1280, 800)
 PHONE = (390, 844)
-PATIENCE = 60.0
+PATIENCE = 40.0
 
 DROP = """([files, zone]) => {
     const transfer = new DataTransfer();

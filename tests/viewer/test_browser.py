@@ -195,6 +195,21 @@ def test_dropped_files_play(visit: Visit, samples: Path, tmp_path: Path) -> None
     visit.until("document.querySelector('.notice')?.textContent.includes('no skeleton')")
 
 
+def test_diffma_json_plays(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    source, file = samples / "cmu_01_01.amc", tmp_path / "walk.diffma.json"
+    file.write_bytes(mp.to_json(source, "diffma:bound=16"))
+    visit.open(page.document([embed.file(source), embed.file(file)]), tmp_path)
+    visit.until("document.body.dataset.frame > 3")
+    assert visit.page.evaluate("document.body.classList.contains('compared')")
+    visit.drop(file)
+    visit.until("document.querySelectorAll('#legend b').length === 1")
+    assert visit.names() == ["walk.diffma.json"]
+    assert visit.text("#frame").endswith("/ 2751")
+    visit.drop(("bad.diffma.json", file.read_bytes().replace(b'"bits":6', b'"bits":66')))
+    visit.until("document.querySelector('.notice') !== null")
+    assert visit.text(".notice").startswith("bad.diffma.json: $.params.bits: expected 1 to 12")
+
+
 def test_a_broken_file_is_told_of(visit: Visit, samples: Path, tmp_path: Path) -> None:
     visit.open(page.document([clip(samples, "freebvh.bvh")]), tmp_path)
     broken = (samples / "mocapbank.bvh").read_bytes().replace(b"JOINT", b"JOINTS", 1)

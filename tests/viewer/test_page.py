@@ -12,6 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 import mocapress as mp
+from mocapress import diffma_json
 from mocapress.cli.app import app
 from mocapress.viewer import embed, page
 
@@ -30,6 +31,49 @@ def test_exact_values_are_exact(samples: Path) -> None:
     values = np.frombuffer(base64.b64decode(content["values"]), "<f8")
     np.testing.assert_array_equal(values.reshape(clip.channels, clip.frames).T, clip.values)
     assert len(content["skeleton"]["columns"]) == clip.channels
+
+
+@pytest.mark.parametrize("name", ["cmu_01_01.amc", "freebvh.bvh"])
+@pytest.mark.parametrize("max_error", [0.5, 0.01])
+def test_an_exported_page_keeps_its_stated_error(
+    samples: Path, tmp_path: Path, name: str, max_error: float
+) -> None:
+    target = tmp_path / "page.html"
+    words = ["view", str(samples / name), "--export", str(target), "--max-error", str(max_error)]
+    result = CliRunner().invoke(app, words)
+    assert result.exit_code == 0
+    assert f"{max_error:g}" in result.stdout
+    (made,) = embedded(target.read_text())
+    decoded = diffma_json.json_to_clip(json.dumps(made["diffma"]).encode())
+    clip = mp.read(samples / name)
+    assert 0 < np.abs(decoded.values - clip.values).max() <= max_error
+    assert made["maxError"] == max_error
+    assert decoded.skeleton is not None
+    assert clip.skeleton is not None
+    np.testing.assert_array_equal(
+        mp.positions(clip.with_values(decoded.values)), mp.positions(decoded)
+    )
+
+
+def test_lossless_export_is_exact(samples: Path, tmp_path: Path) -> None:
+    target, source = tmp_path / "page.html", samples / "cmu_01_01.amc"
+    words = ["view", str(source), "--export", str(target), "--lossless"]
+    assert CliRunner().invoke(app, words).exit_code == 0
+    expected = json.loads(json.dumps([embed.exact(mp.read(source), source.name)]))
+    assert embedded(target.read_text()) == expected
+
+
+@pytest.mark.parametrize("ending", [".diffma.json", ".diffma.json.xz"])
+def test_a_document_is_embedded_as_it_is(samples: Path, tmp_path: Path, ending: str) -> None:
+    file = tmp_path / f"clip{ending}"
+    text = mp.to_json(samples / "freebvh.bvh", "diffma:bound=16")
+    file.write_bytes(diffma_json.named(file.name, text))
+    content = json.loads(text)
+    del content["layout"]
+    assert embed.file(file) == {"name": file.name, "diffma": content}
+    file.write_bytes(b"{}")
+    with pytest.raises(mp.FormatError, match=r"\$\.channels"):
+        embed.file(file)
 
 
 def test_the_policy_names_every_script_and_style_of_the_page() -> None:

@@ -7,6 +7,7 @@
  * @property {import("./skeleton.js").Skeleton|null} skeleton null: there are curves, but no figure
  * @property {number|null} frameTime seconds; null where the file does not say
  * @property {"deg"|"rad"} [angleUnit] of the channels, where not the skeleton's
+ * @property {number} [maxError] that no value exceeds, where that was asked for
  * @property {string} [note] what the page should say of it
  */
 

@@ -4,9 +4,9 @@ import { fromDiffma, message } from "./reading.js";
 /**
  * The clips that the page itself carries.
  *
- * Each is `{"name", "diffma": DOCUMENT}`, or `{"name", "exact": {…}}` with `names`, `frames`,
- * `skeleton`, `frameTime`, `angleUnit` and `values`: all channels one after another, float64
- * little-endian, in base64.
+ * Each has a `name`, an `angleUnit` where that is not the skeleton's, and `diffma`, a document, with
+ * the `maxError` that was asked for; or `exact`: `names`, `frames`, `skeleton`, `frameTime` and
+ * `values`, all channels one after another, float64 little-endian, in base64.
  *
  * @param {string} text JSON
  * @returns {{clips: import("./clip.js").Clip[], errors: string[]}}
@@ -14,10 +14,10 @@ import { fromDiffma, message } from "./reading.js";
 export function embeddedClips(text) {
   const clips = [];
   const errors = [];
-  for (const { name, note, diffma, exact } of JSON.parse(text).clips) {
+  for (const { name, angleUnit, maxError, diffma, exact } of JSON.parse(text).clips) {
     try {
       const clip = diffma ? fromDiffma(diffma) : fromExact(exact);
-      clips.push({ ...clip, name, note: note ?? clip.note });
+      clips.push({ ...clip, name, angleUnit, maxError });
     } catch (error) {
       errors.push(message(error, name));
     }
@@ -25,7 +25,7 @@ export function embeddedClips(text) {
   return { clips, errors };
 }
 
-function fromExact({ names, frames, skeleton, frameTime, angleUnit, values }) {
+function fromExact({ names, frames, skeleton, frameTime, values }) {
   const text = atob(values);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
@@ -40,9 +40,14 @@ function fromExact({ names, frames, skeleton, frameTime, angleUnit, values }) {
     names,
     frames,
     channels: names.map((_, i) => all.subarray(i * frames, (i + 1) * frames)),
-    skeleton: skeleton ?? null,
+    skeleton: skeleton ? withDefaults(skeleton) : null,
     frameTime: frameTime ?? null,
-    angleUnit: angleUnit ?? undefined,
     note: skeleton ? undefined : "no skeleton: only its curves can be shown",
   };
+}
+
+/** DiffMA JSON leaves out what a joint has not. */
+function withDefaults(skeleton) {
+  const nothing = { channels: [], axis: [0, 0, 0], axisOrder: "xyz", ends: [] };
+  return { ...skeleton, joints: skeleton.joints.map((joint) => ({ ...nothing, ...joint })) };
 }

@@ -11,6 +11,7 @@ export function legend(lineup) {
     const facts = [`${take.frames.toLocaleString("en")} frames`, `${rate} fps`];
     if (take.clip.frameTime === null) facts[1] += " taken";
     if (take.points) facts.push(`${take.jointNames.length} joints`, `up ${axisName(take.bearings.up)}`);
+    if (take.clip.maxError) facts.push(`values ±${take.clip.maxError}`);
     const text = facts.join(" · ");
     const isNews = i === 0 || text !== first;
     first ??= text;

@@ -1,19 +1,36 @@
-"""Clips as the page carries them."""
+"""Clips as the page carries them: as DiffMA JSON, or with their exact values."""
 
 import base64
+import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mocapress import api
-from mocapress.model import Clip, Skeleton
+from mocapress import api, diffma_json
+from mocapress.codecs.diffma import DiffMA
+from mocapress.codecs.diffma.skeleton_json import skeleton_keys
+from mocapress.errors import MocapressError
+from mocapress.model import Clip
+
+MAX_ERROR = 0.01
+"""Of a value, in degrees or the file's unit of length: less than can be seen."""
 
 
 def file(
     path: Path, *, asf_path: Path | None = None, max_error: float | None = None
 ) -> dict[str, Any]:
     """Give what is in a motion file, of any kind that mocapress reads.
+
+    Parameters
+    ----------
+    path
+        AMC, BVH, ``.mcz`` or DiffMA JSON; the latter is embedded as it is.
+    asf_path
+        The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
+    max_error
+        Largest error of a value, in its unit; None embeds exact values.
 
     Raises
     ------
@@ -23,9 +40,17 @@ def file(
         When it cannot be read.
 
     """
-    compressed = path.suffix.lower() == ".mcz"
-    clip = (api.load if compressed else api.read)(path, asf_path=asf_path)
-    return exact(clip, path.name)
+    try:
+        if diffma_json.is_json(b"", path.name):
+            return _document(path)
+        compressed = path.suffix.lower() == ".mcz"
+        clip = (api.load if compressed else api.read)(path, asf_path=asf_path)
+        if max_error is None:
+            return exact(clip, path.name)
+        return approximate(clip, max_error, path.name)
+    except MocapressError as error:
+        error.file = error.file or str(path)
+        raise
 
 
 def exact(clip: Clip, name: str = "") -> dict[str, Any]:
@@ -39,30 +64,33 @@ def exact(clip: Clip, name: str = "") -> dict[str, Any]:
     if clip.frame_time is not None:
         content["frameTime"] = float(clip.frame_time)
     if clip.skeleton is not None:
-        content["skeleton"] = skeleton_json(clip, clip.skeleton)
-    unit = next((column.unit for column in clip.columns if column.kind[0] == "r"), None)
-    if unit is not None:
-        content["angleUnit"] = unit
-    return {"name": name or clip.name or "clip", "exact": content}
+        places = [(column.joint, column.kind) for column in clip.columns]
+        content["skeleton"] = skeleton_keys(clip.skeleton, places)
+    return _named(clip, name) | {"exact": content}
 
 
-def skeleton_json(clip: Clip, skeleton: Skeleton) -> dict[str, Any]:
-    """Give the skeleton as DiffMA JSON has it."""
-    return {
-        "rotation": skeleton.rotation,
-        "angleUnit": skeleton.angle_unit,
-        "lengthUnit": skeleton.length_unit,
-        "joints": [
-            {
-                "name": joint.name,
-                "parent": joint.parent,
-                "offset": joint.offset,
-                "channels": joint.channels,
-                "axis": joint.axis,
-                "axisOrder": joint.axis_order,
-                "ends": joint.ends,
-            }
-            for joint in skeleton.joints
-        ],
-        "columns": [[column.joint, column.kind] for column in clip.columns],
-    }
+def approximate(clip: Clip, max_error: float, name: str = "") -> dict[str, Any]:
+    """Give a clip as DiffMA JSON with no value off by more than ``max_error``.
+
+    Raises
+    ------
+    UnsupportedError
+        When a value is no finite number, which JSON cannot hold.
+
+    """
+    text = diffma_json.to_json(clip, DiffMA(max_error=max_error, per="channel"))
+    return _named(clip, name) | {"diffma": json.loads(text), "maxError": max_error}
+
+
+def _named(clip: Clip, name: str) -> dict[str, Any]:
+    # An AMC can be in radians whose skeleton is in degrees.
+    unit = next((column.unit for column in clip.columns if column.kind[0] == "r"), "")
+    made = {"name": name or clip.name or "clip"}
+    return made | {"angleUnit": unit} if unit in ("deg", "rad") else made
+
+
+def _document(path: Path) -> dict[str, Any]:
+    """Give a DiffMA JSON without its layout, which only ``decompress`` needs."""
+    document = diffma_json.open_json(path.read_bytes())
+    text = replace(document, layout=b"").to_json()
+    return {"name": path.name, "diffma": json.loads(text)}

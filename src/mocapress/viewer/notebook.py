@@ -2,16 +2,29 @@
 
 import html
 
+from mocapress.errors import UnsupportedError
 from mocapress.model import Clip
 from mocapress.viewer import embed, page
 
 
-def frame(clip: Clip, *, height: int = 520) -> str:
+def frame(clip: Clip, *, max_error: float = embed.MAX_ERROR, height: int = 520) -> str:
     """Give an ``iframe`` that plays the clip; it is sandboxed and fetches nothing.
 
-    The notebook's file grows by the page and the clip. ``height`` is in CSS pixels.
+    Parameters
+    ----------
+    clip
+        Goes into the notebook's file as DiffMA JSON; exactly, where JSON cannot hold it.
+    max_error
+        Largest error of a value, in its unit.
+    height
+        In CSS pixels.
+
     """
-    document = page.document([embed.exact(clip)], clip.name or "mocapress")
+    try:
+        content = embed.approximate(clip, max_error)
+    except UnsupportedError:
+        content = embed.exact(clip)
+    document = page.document([content], clip.name or "mocapress")
     return (
         f'<iframe sandbox="allow-scripts" title="mocapress" '
         f'style="width:100%;height:{height}px;border:0;border-radius:12px" '
