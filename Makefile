@@ -7,12 +7,12 @@ CORPUS_SOURCE := ../shared/data
 SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined -fno-sanitize-recover=all -Icore
 FUZZ_RUNS ?= 100000
 
-.PHONY: demo test check tests test-js sanitize fuzz bench wheel clean
+.PHONY: demo test check tests test-js browser sanitize fuzz bench wheel clean
 
 demo: $(VENV)/.built
 	@$(BIN)/mocapress bench demo
 
-test: check sanitize tests
+test: check sanitize test-js tests
 
 check: $(VENV)/.built
 	$(BIN)/ruff format --check .
@@ -20,7 +20,7 @@ check: $(VENV)/.built
 	$(BIN)/clang-format --dry-run --Werror core/*.cpp core/*.hpp core/*/*.cpp core/*/*.hpp
 	$(BIN)/mypy
 
-tests: $(VENV)/.built corpus
+tests: $(VENV)/.built corpus browser
 	MOCAPRESS_CORPUS=$(if $(wildcard corpus/.version),$(CURDIR)/corpus,$(MOCAPRESS_CORPUS)) \
 	    $(BIN)/pytest
 
@@ -38,8 +38,18 @@ build/fuzz/%: core/fuzz/fuzz_%.cpp core/fuzz/driver.cpp $(kernels) $(wildcard co
 	@mkdir -p build/fuzz
 	$(CXX) $(SANITIZE) $< core/fuzz/driver.cpp $(kernels) -o $@
 
-test-js:
-	node --test viewer/diffma/test/*.test.js
+test-js: browser
+	@if command -v node >/dev/null; then node --test viewer/diffma/test/*.test.js viewer/test/*.test.js; \
+	    else test -z "$$CI"; fi
+
+# What the page's tests run in. Where it is not there and cannot be installed, they are skipped and
+# say so; in CI they fail.
+browser:
+	@{ command -v node && command -v chromium; } >/dev/null || { \
+	    if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	        apt-get -qq update && DEBIAN_FRONTEND=noninteractive apt-get -qq install -y \
+	            --no-install-recommends nodejs chromium fonts-dejavu-core >/dev/null; \
+	    else false; fi; } || echo "no node or no chromium (Debian: apt-get install nodejs chromium)"
 
 # A codec's kernels built in other ways, build/check/WAY/CODEC: each must print what
 # tests/golden/kernels_CODEC.txt says. MOCAPRESS_NO_CLONES turns run-time dispatch off, so that a
