@@ -91,6 +91,7 @@ class Visit:
         file = folder / "page.html"
         file.write_text(document)
         self.page.goto(file.as_uri())
+        self.until("document.body.classList.contains('empty') || document.body.dataset.frame")
 
     def until(self, expression: str) -> None:
         """Wait until an expression of the page is true; the page forbids to evaluate in itself."""

@@ -280,7 +280,9 @@ def test_the_served_page_plays(visit: Visit, samples: Path) -> None:
 
 def test_a_clip_plays_in_a_notebook(visit: Visit, samples: Path, tmp_path: Path) -> None:
     markup = mp.read(samples / "freebvh.bvh")._repr_html_()
-    visit.open(f"<!doctype html><link rel=icon href=data:,><h1>Notebook</h1>{markup}", tmp_path)
+    file = tmp_path / "notebook.html"
+    file.write_text(f"<!doctype html><link rel=icon href=data:,><h1>Notebook</h1>{markup}")
+    visit.page.goto(file.as_uri())
     inner = visit.page.frame_locator("iframe")
     inner.locator("#frame", has_text="/ 69").wait_for()
     first = inner.locator("#frame").inner_text()

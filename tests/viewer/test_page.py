@@ -1,6 +1,7 @@
 """The document: whole, closed to the world, and safe against what is in the motion."""
 
 import base64
+import gzip
 import hashlib
 import json
 import re
@@ -79,11 +80,11 @@ def test_a_document_is_embedded_as_it_is(samples: Path, tmp_path: Path, ending: 
 def test_the_policy_names_every_script_and_style_of_the_page() -> None:
     document = page.document([])
     inline = re.findall(
-        r'<(?:script type="(?:importmap|module)"|style)>(.*?)</(?:script|style)>',
+        r'<(?:script type="module"|style)>(.*?)</(?:script|style)>',
         document,
         re.DOTALL,
     )
-    assert len(inline) == 3
+    assert len(inline) == 2
     for text in inline:
         digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
         assert f"'sha256-{digest}'" in page.policy()
@@ -92,19 +93,18 @@ def test_the_policy_names_every_script_and_style_of_the_page() -> None:
     assert page.policy() in document
 
 
-def test_every_module_is_in_the_page() -> None:
-    (imports,) = re.findall(r'<script type="importmap">(.*?)</script>', page.document([]))
-    modules = {
-        name: base64.b64decode(url.partition(",")[2]).decode()
-        for name, url in json.loads(imports)["imports"].items()
-    }
+def test_every_module_is_in_the_page_after_those_that_it_imports() -> None:
+    (packed,) = re.findall(r'id="modules">(.*?)</script>', page.document([]))
+    modules = json.loads(gzip.decompress(base64.b64decode(packed)))
     sources = {f"page/{path.name}" for path in (page.SOURCES / "page").glob("*.js")}
-    assert sources <= set(modules)
-    for text in modules.values():
-        for target in re.findall(
-            r'^(?:import|export)\b[^;]*?from\s*"([^"]+)";', text, re.MULTILINE
-        ):
-            assert target in modules
+    assert sources - {"page/start.js"} <= {path for path, _ in modules}
+    before: set[str] = set()
+    for path, text in modules:
+        assert set(re.findall(r'"module:([^"]+)"', text)) <= before, path
+        statements = r'^(?:import|export)\b[^;]*?from\s*["\']([^"\']+)["\'];'
+        for name in re.findall(statements, text, re.MULTILINE):
+            assert name.startswith("module:"), path
+        before.add(path)
 
 
 def test_motion_cannot_leave_its_element() -> None:

@@ -120,6 +120,10 @@ export class Viewport {
       renderer.setScissor(cell.x, bottom, cell.width, cell.height);
       renderer.render(this.stages[i].scene, this.camera);
     });
+    if (this.stages.length && !this.drawn) {
+      this.drawn = true;
+      performance.mark("first frame");
+    }
   }
 
   #resize() {

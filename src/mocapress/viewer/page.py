@@ -1,11 +1,12 @@
 """The page as one document: markup, style, scripts and motion, with nothing to be fetched.
 
-The scripts are modules that import each other by relative paths. An import map gives each of them
-under its path as a ``data:`` URL, so that they are the same files in a checkout, in its tests and
-in the document, without a bundler.
+The scripts are modules that import each other by relative paths. The document holds them packed,
+each after those that it imports; ``page/start.js`` gives every one of them a ``blob:`` URL. So they
+are the same files in a checkout, in its tests and in the document, without a bundler.
 """
 
 import base64
+import gzip
 import hashlib
 import json
 import posixpath
@@ -19,6 +20,7 @@ _PACKAGED = Path(__file__).with_name("web")
 SOURCES = _PACKAGED if _PACKAGED.is_dir() else Path(__file__).parents[3] / "viewer"
 
 _MAIN = "page/main.js"
+_START = "page/start.js"
 _VENDORED = {
     "three": "vendor/three/three.module.min.js",
     "three/addons/controls/OrbitControls.js": "vendor/three/OrbitControls.js",
@@ -42,17 +44,16 @@ def document(clips: Sequence[dict[str, Any]], title: str = "mocapress") -> str:
         HTML; its policy (``policy``) allows no request to anywhere.
 
     """
-    style, imports, start = _parts()
     # In a script element only "<" can end the text early or begin a comment.
     motion = json.dumps({"clips": clips}, separators=(",", ":")).replace("<", "\\u003c")
     head = (
         f'<meta http-equiv="Content-Security-Policy" content="{policy()}">\n'
-        f"<title>{_escaped(title)}</title>\n<style>{style}</style>"
+        f"<title>{_escaped(title)}</title>\n<style>{_text('page/style.css')}</style>"
     )
     body = (
-        f'<script type="importmap">{imports}</script>\n'
         f'<script type="application/json" id="clips">{motion}</script>\n'
-        f'<script type="module">{start}</script>\n'
+        f'<script type="application/gzip" id="modules">{_packed_modules()}</script>\n'
+        f'<script type="module">{_text(_START)}</script>\n'
         f"<!--\n{_text('vendor/three/LICENSE')}-->"
     )
     markup = _text("page/index.html")
@@ -61,48 +62,48 @@ def document(clips: Sequence[dict[str, Any]], title: str = "mocapress") -> str:
 
 def policy() -> str:
     """Give the content security policy: only the page's own scripts and style, no connections."""
-    style, imports, start = (_digest(part) for part in _parts())
     return (
-        f"default-src 'none'; script-src {imports} {start} data:; style-src {style}; "
+        f"default-src 'none'; script-src {_digest(_text(_START))} blob:; "
+        f"style-src {_digest(_text('page/style.css'))}; "
         "img-src data:; base-uri 'none'; form-action 'none'"
     )
 
 
-def _parts() -> tuple[str, str, str]:
-    """Give style, import map and first script."""
-    urls = {name: _data_url(source) for name, source in sorted(_modules().items())}
-    return _text("page/style.css"), json.dumps({"imports": urls}), f'import "{_MAIN}";'
+def _packed_modules() -> str:
+    """Give a JSON list of [path, source] in gzip and base64."""
+    text = json.dumps(list(modules().items())).encode()
+    return base64.b64encode(gzip.compress(text, mtime=0)).decode()
 
 
-def _modules() -> dict[str, str]:
-    """Give all modules that the first one needs, by their paths, imports by these paths, too."""
-    found: dict[str, str] = {}
-    pending = [_MAIN]
-    while pending:
-        path = pending.pop()
-        if path in found:
-            continue
+def modules() -> dict[str, str]:
+    """Give the page's modules by their paths, each after all that it imports.
 
-        def rename(match: re.Match[str], path: str = path) -> str:
+    Imports name the paths, as ``"module:page/app.js"``.
+    """
+    done: dict[str, str] = {}
+    begun: set[str] = set()
+
+    def add(path: str) -> None:
+        def named(match: re.Match[str]) -> str:
             target = _target(path, match[3])
-            if target is None:
-                return match[0]
-            pending.append(target)
-            return f'{match[1]}"{target}"'
+            if target is None or (target in begun and target not in done):
+                return match[0]  # a comment's: there are no cycles
+            if target not in done:
+                add(target)
+            return f'{match[1]}"module:{target}"'
 
-        source = _IMPORT.sub(rename, _text(path))
-        found[path] = f"{source}\n//# sourceURL=mocapress/{path}\n"
-    return found
+        begun.add(path)
+        source = _IMPORT.sub(named, _text(path))
+        done[path] = f"{source}\n//# sourceURL=mocapress/{path}\n"
+
+    add(_MAIN)
+    return done
 
 
 def _target(importer: str, specifier: str) -> str | None:
     if specifier.startswith("."):
         return posixpath.normpath(posixpath.join(posixpath.dirname(importer), specifier))
     return _VENDORED.get(specifier)
-
-
-def _data_url(source: str) -> str:
-    return "data:text/javascript;base64," + base64.b64encode(source.encode()).decode()
 
 
 def _text(path: str) -> str:

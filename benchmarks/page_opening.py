@@ -1,0 +1,50 @@
+"""How long the page needs to open a long clip: from navigation to the first frame on the screen.
+
+    python benchmarks/page_opening.py [FRAMES]
+
+Repeats the CMU sample to 20,000 frames, embeds it both ways, and opens each page in Chromium with
+software rendering, as the tests do.
+"""
+
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+import mocapress as mp
+from mocapress.viewer import embed, page
+
+ROOT = Path(__file__).parents[1]
+sys.path.append(str(ROOT / "tests/viewer"))
+from browsing import chromium  # noqa: E402
+
+SHOWN = "performance.getEntriesByName('first frame')[0]?.startTime ?? 0"
+
+
+def main(frames: int) -> None:
+    clip = mp.read(ROOT / "samples/cmu_01_01.amc")
+    rows = np.resize(np.arange(clip.frames), frames)
+    clip = clip.with_values(clip.values[rows])
+    made = {"exact": embed.exact(clip), "diffma": embed.approximate(clip, embed.MAX_ERROR)}
+    with chromium() as browser, tempfile.TemporaryDirectory() as folder:
+        for way, content in made.items():
+            file = Path(folder) / f"{way}.html"
+            file.write_text(page.document([content]))
+            times = []
+            for _ in range(5):
+                tab = browser.new_page(viewport={"width": 1280, "height": 800})
+                tab.goto(file.as_uri())
+                while not tab.evaluate(SHOWN):
+                    time.sleep(0.02)
+                times.append(tab.evaluate(SHOWN) / 1000)
+                tab.close()
+            size = file.stat().st_size / 1e6
+            print(
+                f"{way}: {frames} frames, {size:.1f} MB, median {np.median(times):.2f} s, {times}"
+            )
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 20_000)
