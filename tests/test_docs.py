@@ -31,13 +31,15 @@ def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     shutil.copy(ROOT / "samples/freebvh.bvh", tmp_path / "clips")
     monkeypatch.chdir(tmp_path)
     commands = re.findall(r"^\$ mocapress (.*?)(?:  #.*)?$", README, re.MULTILINE)
-    assert len(commands) == 8
+    assert len(commands) == 10
     for command in commands:
         if command.startswith("decompress"):
             Path("walk.amc").rename("original.amc")
         words = command.split()
         if words[0] == "bench":  # the whole benchmark is too long for a test
             words = [*words[: words.index("--plots")], "--only", "app,gzip -9"]
+        if words[0] == "view" and "--export" not in words:  # it would serve until it is told to end
+            words += ["--export", "served.html"]
         result = CliRunner().invoke(app, words)
         assert result.exit_code == 0, (command, result.output)
     assert Path("walk.amc").read_bytes() == Path("original.amc").read_bytes()

@@ -1,8 +1,14 @@
 import { axisName } from "./bearings.js";
 import { element } from "./element.js";
 
+const MOST_NAMES = 4; // at the top; the cells of a grid have names, too
+
 /** What stands at the top: each clip's colour, name, length and rate. */
 export function legend(lineup) {
+  const count = lineup.takes.length;
+  if (count > MOST_NAMES) {
+    return [element("span", { className: "clip" }, element("b", {}, `${count} clips`))];
+  }
   let first; // what is told of the first clip is not told again of one like it
   return lineup.takes.map((take, i) => {
     const swatch = element("i", { className: "swatch" });
