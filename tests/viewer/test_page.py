@@ -137,6 +137,11 @@ def test_broken_files_are_told_of_before_anything_is_served(tmp_path: Path, cont
     assert "Traceback" not in result.output
 
 
+def test_a_skeleton_alone_is_not_played(samples: Path) -> None:
+    with pytest.raises(mp.UnsupportedError, match=r"cmu_01_01\.asf: no frames"):
+        embed.file(samples / "cmu_01_01.asf")
+
+
 def test_a_compressed_clip_is_shown(samples: Path, tmp_path: Path) -> None:
     file = tmp_path / "clip.bvh.mcz"
     file.write_bytes(mp.compress(samples / "freebvh.bvh"))

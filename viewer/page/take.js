@@ -3,6 +3,8 @@ import { secondsPerFrame } from "./clip.js";
 import { FileError } from "./file_error.js";
 import { Kinematics } from "./kinematics.js";
 
+// Places of points that fit a browser's memory: three hours of a person at 120 frames a second.
+const MOST_PLACES = 5e7;
 const SMOOTHING = 0.6; // seconds over which the way that a camera follows is averaged
 
 /** A clip made ready to be played: placed in space, upright, scaled, on the floor. */
@@ -20,6 +22,13 @@ export class Take {
     this.kinematics = clip.skeleton ? new Kinematics(clip) : null;
     this.parents = this.kinematics?.parents ?? [];
     this.points = this.parents.length;
+    if (this.frames * this.points > MOST_PLACES) {
+      throw new FileError("too many frames and joints to be shown", {
+        file: clip.name,
+        expected: `a product of at most ${MOST_PLACES}`,
+        found: `${this.frames} x ${this.points}`,
+      });
+    }
     this.positions = this.kinematics?.positions() ?? new Float32Array(0);
     this.jointNames = clip.skeleton ? clip.skeleton.joints.map((joint) => joint.name) : [];
     this.standAs(findBearings(this.positions, this.points, this.jointNames));

@@ -117,3 +117,19 @@ test("damaged files give errors, no other exceptions, and end", () => {
     assert.equal(clips.length + errors.length, 1);
   }
 });
+
+test("what a file claims is not believed", () => {
+  const bones = Array.from({ length: 1000 }, (_, i) => `b${i} 1`).join("\n");
+  const frames = Array.from({ length: 60000 }, (_, i) => i + 2).join("\n");
+  const made = readFiles([
+    { name: "long.amc", bytes: bytes(`1\n${bones}\n${frames}\n`) },
+    { name: "a.bvh", bytes: bytes("HIERARCHY\nROOT a {\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 999999999999\nFrame Time: 1\n0\n") },
+    { name: "deep.diffma.json", bytes: bytes("[".repeat(1e6)) },
+    { name: "nested.diffma.json", bytes: bytes(`{"channels":${"[".repeat(1e4)}${"]".repeat(1e4)}}`) },
+  ]);
+  assert.equal(made.clips.length, 0);
+  assert.match(made.errors[0], /^long.amc: too many frames and channels; expected a product of at most 50000000/);
+  assert.match(made.errors[1], /^a.bvh: frames are missing; expected 999999999999 frames/);
+  assert.match(made.errors[2], /^deep.diffma.json: /);
+  assert.match(made.errors[3], /^nested.diffma.json: \$\.channels\[0\]: expected a string/);
+});

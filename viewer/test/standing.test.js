@@ -109,3 +109,9 @@ test("the player plays, steps and begins again", () => {
     assert.equal(player.frame, frame);
   }
 });
+
+test("a clip that no memory can hold is refused before anything is made", () => {
+  const clip = figure([1, 1]);
+  assert.throws(() => new Take({ ...clip, frames: 1e7 }), /too many frames and joints.*found 10000000 x 6/);
+  assert.throws(() => new Take({ ...clip, frames: 0 }), /no frames/);
+});

@@ -11,7 +11,7 @@ import numpy as np
 from mocapress import api, diffma_json
 from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.diffma.skeleton_json import skeleton_keys
-from mocapress.errors import MocapressError
+from mocapress.errors import MocapressError, UnsupportedError
 from mocapress.model import Clip
 
 MAX_ERROR = 0.01
@@ -45,6 +45,8 @@ def file(
             return _document(path)
         compressed = path.suffix.lower() == ".mcz"
         clip = (api.load if compressed else api.read)(path, asf_path=asf_path)
+        if not clip.frames:
+            raise UnsupportedError("no frames to be played")
         if max_error is None:
             return exact(clip, path.name)
         return approximate(clip, max_error, path.name)
