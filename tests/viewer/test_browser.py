@@ -183,6 +183,7 @@ def test_the_inspector_shows_a_joints_channels(visit: Visit, samples: Path, tmp_
 def test_dropped_files_play(visit: Visit, samples: Path, tmp_path: Path) -> None:
     visit.open(page.document([]), tmp_path)
     assert visit.page.locator(".welcome").is_visible()
+    assert visit.pixels().mean() > 0.8  # the page's light ground, through an empty canvas
     visit.drop(samples / "freebvh.bvh")
     visit.until("document.body.dataset.frame > 0")
     visit.drop(samples / "cmu_01_01.amc", samples / "cmu_01_01.asf")

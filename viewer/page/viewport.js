@@ -16,6 +16,7 @@ export class Viewport {
     this.canvas = canvas;
     this.stages = [];
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer.setClearColor(0x000000, 0);
     this.renderer.setScissorTest(true);
     this.renderer.shadowMap.enabled = true;
     this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.05, 120);
