@@ -55,7 +55,7 @@ function firstFrame(text, begin) {
 }
 
 function* linesFrom(text, begin) {
-  for (let at = begin; at < text.length; ) {
+  for (let at = begin; at < text.length;) {
     const end = text.indexOf("\n", at);
     yield text.slice(at, end < 0 ? text.length : end);
     at = end < 0 ? text.length : end + 1;

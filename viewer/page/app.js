@@ -143,7 +143,8 @@ export class App {
       reframe: () => this.viewport.frame(),
       "show-inspector": () => this.#toggleInspector(),
       "close-inspector": () => this.#toggleInspector(false),
-      theme: () => this.#setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"),
+      theme: () =>
+        this.#setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"),
       help: () => this.#toggleHelp(),
       "close-help": () => at("keys").close(),
       open: () => at("replace-files").click(),
@@ -152,7 +153,9 @@ export class App {
       heat: () => this.#toggleErrors(),
     };
     for (const [id, act] of Object.entries(actions)) at(id).addEventListener("click", act);
-    at("speed").append(...SPEEDS.map((speed) => element("option", { value: String(speed) }, `${speed}×`)));
+    at("speed").append(
+      ...SPEEDS.map((speed) => element("option", { value: String(speed) }, `${speed}×`)),
+    );
     at("speed").addEventListener("change", () => player.setSpeed(Number(at("speed").value)));
     player.addEventListener("change", () => this.#changed());
     this.inspector.addEventListener("choose", () => this.#changed());
@@ -171,8 +174,18 @@ export class App {
     const by = (direction) => (event) => player.step(direction * (event.shiftKey ? second() : 1));
     return [
       { keys: [" ", "k"], label: "Space", text: "play or pause", act: () => player.play() },
-      { keys: ["ArrowLeft", ","], label: "←", text: "a frame back; with Shift a second", act: by(-1) },
-      { keys: ["ArrowRight", "."], label: "→", text: "a frame on; with Shift a second", act: by(1) },
+      {
+        keys: ["ArrowLeft", ","],
+        label: "←",
+        text: "a frame back; with Shift a second",
+        act: by(-1),
+      },
+      {
+        keys: ["ArrowRight", "."],
+        label: "→",
+        text: "a frame on; with Shift a second",
+        act: by(1),
+      },
       { keys: ["Home"], label: "Home", text: "first frame", act: () => player.seek(0) },
       { keys: ["End"], label: "End", text: "last frame", act: () => player.step(player.frames) },
       { keys: ["-", "["], label: "−", text: "slower", act: () => this.#changeSpeed(-1) },
@@ -180,10 +193,20 @@ export class App {
       { keys: ["o"], label: "O", text: "overlay or side by side", act: () => this.#toggleMode() },
       { keys: ["e"], label: "E", text: "error as colour", act: () => this.#toggleErrors() },
       { keys: ["c"], label: "C", text: "camera follows or stays", act: () => this.#toggleFollow() },
-      { keys: ["f", "r"], label: "F", text: "frame the figure anew", act: () => this.viewport.frame() },
+      {
+        keys: ["f", "r"],
+        label: "F",
+        text: "frame the figure anew",
+        act: () => this.viewport.frame(),
+      },
       { keys: ["u"], label: "U", text: "another axis up", act: () => this.#turnUp() },
       { keys: ["t"], label: "T", text: "trail of the root", act: () => this.#toggleTrails() },
-      { keys: ["i"], label: "I", text: "inspector of channels", act: () => this.#toggleInspector() },
+      {
+        keys: ["i"],
+        label: "I",
+        text: "inspector of channels",
+        act: () => this.#toggleInspector(),
+      },
       { keys: ["d"], label: "D", text: "dark or light", act: () => this.at("theme").click() },
       { keys: ["?"], label: "?", text: "this list", act: () => this.#toggleHelp() },
     ];
@@ -197,7 +220,10 @@ export class App {
     canvas.addEventListener("pointerup", (event) => {
       if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
       const box = canvas.getBoundingClientRect();
-      const { stage, point } = this.viewport.pick(event.clientX - box.left, event.clientY - box.top);
+      const { stage, point } = this.viewport.pick(
+        event.clientX - box.left,
+        event.clientY - box.top,
+      );
       const take = this.viewport.stages[stage]?.takes[0];
       if (point < 0 || (take !== this.lineup.takes[0] && !this.lineup.comparison)) return;
       const joint = point < take.jointNames.length ? point : take.parents[point];

@@ -59,7 +59,8 @@ class Parser {
 
   rootLine(root, line) {
     if (line.key === "order") root.channels = this.channels(line);
-    else if (line.key === "axis" && line.words[1]) root.axisOrder = this.order(line, line.words.at(-1));
+    else if (line.key === "axis" && line.words[1])
+      root.axisOrder = this.order(line, line.words.at(-1));
     else if (line.key === "position") root.position = this.vector(line);
     else if (line.key === "orientation") root.axis = this.vector(line);
   }

@@ -77,7 +77,10 @@ class Hierarchy {
     let waiting = null; // a joint whose brace is to come
     for (let match = piece.exec(this.text); match; match = piece.exec(this.text)) {
       const at = match.index;
-      const words = match[0].replace(/^\xef\xbb\xbf/, "").trim().split(/\s+/);
+      const words = match[0]
+        .replace(/^\xef\xbb\xbf/, "")
+        .trim()
+        .split(/\s+/);
       const key = words[0].toUpperCase();
       if (waiting && key !== "{") this.fail(at, `joint ${waiting.name}`, "{");
       if (key === "MOTION") {

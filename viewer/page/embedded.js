@@ -4,8 +4,8 @@ import { fromDiffma, message } from "./reading.js";
 /**
  * The clips that the page itself carries.
  *
- * Each has a `name`, an `angleUnit` where that is not the skeleton's, and `diffma`, a document, with
- * the `maxError` that was asked for; or `exact`: `names`, `frames`, `skeleton`, `frameTime` and
+ * Each has a `name`, the `angleUnit` of its channels, and `diffma`, a document, with the `maxError`
+ * that was asked for; or `exact`: `names`, `frames`, `skeleton`, `frameTime` and
  * `values`, all channels one after another, float64 little-endian, in base64.
  *
  * @param {string} text JSON

@@ -16,7 +16,7 @@ const THICKEST = 0.026;
 const CHOSEN_BALL = 0.03;
 const [SMALL_HEAD, LARGE_HEAD] = [0.06, 0.1];
 
-/** A skeleton on a stage: a tapered bone from every joint to the next, balls at the joints, a head. */
+/** A skeleton on a stage: tapered bones from joint to joint, balls at the joints, a head. */
 export class Figure {
   /**
    * @param {import("./take.js").Take} take
@@ -59,11 +59,17 @@ export class Figure {
       const radius = this.grown * this.thickness[point];
       turn.setFromUnitVectors(UP, length > 0 ? to.divideScalar(length) : UP);
       size.set(radius, length, radius);
-      this.boneMesh.setMatrixAt(i, matrix.compose(from, turn, length > 0 ? size : size.setScalar(0)));
+      this.boneMesh.setMatrixAt(
+        i,
+        matrix.compose(from, turn, length > 0 ? size : size.setScalar(0)),
+      );
       if (point !== this.headEnd) return;
       const head = this.grown ** 0.3 * Math.min(LARGE_HEAD, Math.max(SMALL_HEAD, 0.55 * length));
       from.addScaledVector(to, length / 2);
-      this.headMesh.setMatrixAt(0, matrix.compose(from, turn, size.set(0.82 * head, head, 0.9 * head)));
+      this.headMesh.setMatrixAt(
+        0,
+        matrix.compose(from, turn, size.set(0.82 * head, head, 0.9 * head)),
+      );
     });
     turn.identity();
     for (let point = 0; point < take.points; point++) {

@@ -1,12 +1,4 @@
-import {
-  Color,
-  Group,
-  Mesh,
-  PlaneGeometry,
-  ShaderMaterial,
-  ShadowMaterial,
-  Vector2,
-} from "three";
+import { Color, Group, Mesh, PlaneGeometry, ShaderMaterial, ShadowMaterial, Vector2 } from "three";
 
 const SIZE = 40;
 
@@ -29,7 +21,8 @@ float lines(float size, float width) {
   vec2 at = (place + offset) / size;
   vec2 soft = fwidth(at);
   vec2 away = abs(fract(at - 0.5) - 0.5);
-  vec2 line = (1.0 - smoothstep(soft * width, soft * (width + 1.0), away)) * clamp(0.6 - soft, 0.0, 0.5) * 2.0;
+  vec2 line = 1.0 - smoothstep(soft * width, soft * (width + 1.0), away);
+  line *= clamp(1.2 - 2.0 * soft, 0.0, 1.0); // far away, where lines would merge, none
   return max(line.x, line.y);
 }
 void main() {

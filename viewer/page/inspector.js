@@ -25,7 +25,7 @@ export class Inspector extends EventTarget {
   }
 
   /**
-   * @param {import("./take.js").Take[]} takes the first one's joints are listed; the channels of the
+   * @param {import("./take.js").Take[]} takes the first one's joints are listed; channels of the
    *   others are drawn where they have the same names
    * @param {string[]} colours
    */
@@ -121,7 +121,7 @@ export class Inspector extends EventTarget {
   }
 }
 
-/** Per joint its name, depth in the tree and columns; without a skeleton by the names' first part. */
+/** Per joint its name, depth in the tree and columns; without a skeleton by parts of names. */
 function channelGroups(clip) {
   if (clip.skeleton) {
     const { joints, columns } = clip.skeleton;

@@ -1,7 +1,11 @@
 /**
  * Keys, what they do and how `?` lists them.
  *
- * @typedef {{keys: string[], label: string, text: string, act: (event: KeyboardEvent) => void}} Binding
+ * @typedef {Object} Binding
+ * @property {string[]} keys
+ * @property {string} label of the first one
+ * @property {string} text
+ * @property {(event: KeyboardEvent) => void} act
  */
 
 /** @param {Binding[]} bindings */

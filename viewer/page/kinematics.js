@@ -1,9 +1,9 @@
 import { FileError } from "./file_error.js";
 
 /**
- * Forward kinematics of one clip, by the conventions of mocapress (docs/decisions/002-kinematics.md):
- * a joint turns by the product of its channels' turns, about axes already turned (BVH), or about the
- * fixed axes of its own frame (ASF); translations replace the offset (BVH) or add to it (ASF).
+ * Forward kinematics of one clip, by the conventions of docs/decisions/002-kinematics.md: a joint
+ * turns by the product of its channels' turns, about axes already turned (BVH), or about the fixed
+ * axes of its own frame (ASF); translations replace the offset (BVH) or add to it (ASF).
  */
 export class Kinematics {
   /**

@@ -16,13 +16,20 @@ export function legend(lineup) {
     const rate = Math.round(100 / take.frameTime) / 100;
     const facts = [`${take.frames.toLocaleString("en")} frames`, `${rate} fps`];
     if (take.clip.frameTime === null) facts[1] += " taken";
-    if (take.points) facts.push(`${take.jointNames.length} joints`, `up ${axisName(take.bearings.up)}`);
+    if (take.points)
+      facts.push(`${take.jointNames.length} joints`, `up ${axisName(take.bearings.up)}`);
     if (take.clip.maxError) facts.push(`values ±${take.clip.maxError}`);
     const text = facts.join(" · ");
     const isNews = i === 0 || text !== first;
     first ??= text;
     const name = element("b", {}, take.name);
-    return element("span", { className: "clip" }, swatch, name, element("small", {}, isNews ? text : ""));
+    return element(
+      "span",
+      { className: "clip" },
+      swatch,
+      name,
+      element("small", {}, isNews ? text : ""),
+    );
   });
 }
 

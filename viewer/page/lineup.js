@@ -23,7 +23,8 @@ export class Lineup {
     const [original, decoded] = takes;
     this.comparison = takes.length === 2 ? compare(original, decoded) : null;
     if (this.comparison) decoded.standAs(original.bearings);
-    if (takes.length === 2 && decoded.clip.frameTime === null) decoded.frameTime = original.frameTime;
+    if (takes.length === 2 && decoded.clip.frameTime === null)
+      decoded.frameTime = original.frameTime;
   }
 
   get colours() {
@@ -57,7 +58,7 @@ export class Lineup {
     if (this.comparison) this.takes[1].standAs(this.takes[0].bearings);
   }
 
-  /** Colour a figure: by its error where it was decoded and this is wanted; mark the chosen joint. */
+  /** Colour the figures: by error, where that is wanted; mark the chosen joint. */
   paint(stages, time, chosen, mark) {
     for (const stage of stages) {
       stage.figures.forEach((figure, i) => {

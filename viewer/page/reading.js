@@ -77,7 +77,9 @@ export function message(error, file) {
 function skeletonOf(amc, skeletons) {
   const stem = stemOf(amc);
   const subject = skeletons
-    .filter((asf) => stem.startsWith(stemOf(asf)) && /^[_\-. ]/.test(stem.slice(stemOf(asf).length)))
+    .filter(
+      (asf) => stem.startsWith(stemOf(asf)) && /^[_\-. ]/.test(stem.slice(stemOf(asf).length)),
+    )
     .sort((a, b) => b.name.length - a.name.length);
   const only = skeletons.length === 1 ? skeletons[0] : undefined;
   return skeletons.find((asf) => stemOf(asf) === stem) ?? subject[0] ?? only;

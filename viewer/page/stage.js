@@ -19,7 +19,9 @@ export class Stage {
     this.floor = new Floor(this.gridUnit * bearings.scale);
     this.floor.reach(bearings.reach + 3);
     this.figures = takes.map((take, i) => new Figure(take, colours[i]));
-    this.trails = takes.map((take, i) => new Trail(take, this.figures[i].colour, 0.003 + 0.001 * i));
+    this.trails = takes.map(
+      (take, i) => new Trail(take, this.figures[i].colour, 0.003 + 0.001 * i),
+    );
     if (takes.length > 1) this.figures[0].beShell(true);
     for (const part of [...this.figures, ...this.trails]) this.world.add(part.group);
     this.scene.add(this.floor.group, this.world, ...lights());
@@ -56,7 +58,10 @@ export class Stage {
     const { places } = this.figures[0];
     let best = [-1, Infinity];
     for (let point = 0; point < this.takes[0].points; point++) {
-      place.fromArray(places, 3 * point).add(this.world.position).project(camera);
+      place
+        .fromArray(places, 3 * point)
+        .add(this.world.position)
+        .project(camera);
       const away = Math.hypot((place.x - x) * camera.aspect, place.y - y);
       if (away < best[1]) best = [point, away];
     }

@@ -62,7 +62,14 @@ function ribbon(take, step, count, height) {
     const length = Math.hypot(dx, dz);
     if (length > 1e-5) [across, along] = [(-dz / length) * HALF_WIDTH, (dx / length) * HALF_WIDTH];
     places.set(
-      [way[2 * i] + across, height, way[2 * i + 1] + along, way[2 * i] - across, height, way[2 * i + 1] - along],
+      [
+        way[2 * i] + across,
+        height,
+        way[2 * i + 1] + along,
+        way[2 * i] - across,
+        height,
+        way[2 * i + 1] - along,
+      ],
       6 * i,
     );
   }

@@ -7,7 +7,18 @@ import { Scanner } from "../page/scanner.js";
 const scanner = (text) => new Scanner(new TextEncoder().encode(text));
 
 test("numbers in any usual notation", () => {
-  const texts = ["0", "-0", "+1", "1.", ".5", "-.5", "1e3", "-1.6201e-014", "2.5E+2", "9007199254740993"];
+  const texts = [
+    "0",
+    "-0",
+    "+1",
+    "1.",
+    ".5",
+    "-.5",
+    "1e3",
+    "-1.6201e-014",
+    "2.5E+2",
+    "9007199254740993",
+  ];
   const reader = scanner(`${texts.join(" ")}\n`);
   for (const text of texts) assert.ok(Object.is(reader.number(), Number(text)), text);
   assert.ok(reader.lineEnds());

@@ -7,11 +7,25 @@ import { compare } from "../page/comparison.js";
 import { Player } from "../page/player.js";
 import { Take } from "../page/take.js";
 
-const UPS = [[0, 1], [1, 1], [2, 1], [0, -1], [1, -1], [2, -1]];
+const UPS = [
+  [0, 1],
+  [1, 1],
+  [2, 1],
+  [0, -1],
+  [1, -1],
+  [2, -1],
+];
 
 // Hips, head, two feet and two hands; feet 100 units below the hips, facing +z when y is up.
 const names = ["hips", "head", "leftFoot", "rightFoot", "leftHand", "rightHand"];
-const places = [[0, 100, 0], [0, 180, 0], [10, 0, 0], [-10, 0, 0], [60, 140, 0], [-60, 140, 0]];
+const places = [
+  [0, 100, 0],
+  [0, 180, 0],
+  [10, 0, 0],
+  [-10, 0, 0],
+  [60, 140, 0],
+  [-60, 140, 0],
+];
 
 /** The figure with another axis up; it walks along its front. */
 function figure(up, step = 0) {
@@ -28,7 +42,11 @@ function figure(up, step = 0) {
   const frames = 50;
   const way = Array.from({ length: frames }, (_, f) => back(0, 100, step * f));
   const channels = [0, 1, 2].map((k) => Float64Array.from(way, (place) => place[k]));
-  const columns = [[0, "tx"], [0, "ty"], [0, "tz"]];
+  const columns = [
+    [0, "tx"],
+    [0, "ty"],
+    [0, "tz"],
+  ];
   const skeleton = { rotation: "moving", angleUnit: "deg", lengthUnit: null, joints, columns };
   return { name: "figure", names: ["a", "b", "c"], frames, channels, skeleton, frameTime: 0.01 };
 }
@@ -57,7 +75,10 @@ test("turning up keeps the hand", () => {
     const turn = turnUp(up);
     const [a, b, c] = [turn(1, 0, 0), turn(0, 1, 0), turn(0, 0, 1)];
     const cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-    assert.deepEqual(cross.map((x) => x + 0), c.map((x) => x + 0));
+    assert.deepEqual(
+      cross.map((x) => x + 0),
+      c.map((x) => x + 0),
+    );
   }
 });
 
@@ -79,7 +100,10 @@ test("errors are distances", () => {
   b.channels[2] = b.channels[2].map((x, frame) => x + (frame === 7 ? 4 : 0));
   const made = compare(new Take(a), new Take(b));
   assert.equal(made.largest, 5);
-  assert.deepEqual([...made.worst].filter((error) => error > 0), [5]);
+  assert.deepEqual(
+    [...made.worst].filter((error) => error > 0),
+    [5],
+  );
   assert.equal(made.worst[7], 5);
   assert.ok(Math.abs(made.average - 5 / 50) < 1e-9);
   const other = figure([1, 1]);
@@ -112,6 +136,9 @@ test("the player plays, steps and begins again", () => {
 
 test("a clip that no memory can hold is refused before anything is made", () => {
   const clip = figure([1, 1]);
-  assert.throws(() => new Take({ ...clip, frames: 1e7 }), /too many frames and joints.*found 10000000 x 6/);
+  assert.throws(
+    () => new Take({ ...clip, frames: 1e7 }),
+    /too many frames and joints.*found 10000000 x 6/,
+  );
   assert.throws(() => new Take({ ...clip, frames: 0 }), /no frames/);
 });
