@@ -42,20 +42,18 @@ export class Kinematics {
     const { turns, parents } = this;
     for (let j = 0; j < this.jointCount; j++) {
       const joint = this.joints[j];
-      const [dx, dy, dz] = joint.offset;
-      const [tx, ty, tz] = joint.moves;
-      const x = tx ? tx[frame] + (joint.adds ? dx : 0) : dx;
-      const y = ty ? ty[frame] + (joint.adds ? dy : 0) : dy;
-      const z = tz ? tz[frame] + (joint.adds ? dz : 0) : dz;
+      const x = along(joint, 0, frame);
+      const y = along(joint, 1, frame);
+      const z = along(joint, 2, frame);
       const parent = parents[j];
       if (parent < 0) {
         out[at + 3 * j] = x;
         out[at + 3 * j + 1] = y;
         out[at + 3 * j + 2] = z;
-        turns.set([1, 0, 0, 0], 4 * j);
+        set(turns, 4 * j, 1, 0, 0, 0);
       } else {
         placeFrom(turns, 4 * parent, out, at + 3 * parent, x, y, z, at + 3 * j);
-        turns.copyWithin(4 * j, 4 * parent, 4 * parent + 4);
+        for (let k = 0; k < 4; k++) turns[4 * j + k] = turns[4 * parent + k];
       }
       this.#turn(joint, frame, 4 * j);
     }
@@ -81,12 +79,20 @@ export class Kinematics {
   #turn(joint, frame, q) {
     const { turns } = this;
     if (joint.frame) multiply(turns, q, joint.frame);
-    for (const { axis, angles, unit } of joint.turns) {
+    for (let k = 0; k < joint.turns.length; k++) {
+      const { axis, angles, unit } = joint.turns[k];
       const half = (angles[frame] * unit) / 2;
       turnAbout(turns, q, axis, Math.cos(half), Math.sin(half));
     }
     if (joint.unframe) multiply(turns, q, joint.unframe);
   }
+}
+
+/** A coordinate of a joint's place in its parent's frame. */
+function along(joint, axis, frame) {
+  const channel = joint.moves[axis];
+  if (!channel) return joint.offset[axis];
+  return joint.adds ? channel[frame] + joint.offset[axis] : channel[frame];
 }
 
 /** What of each joint moves: its channels' values, found once. */
@@ -143,7 +149,11 @@ function turnAbout(turns, q, axis, c, s) {
   else set(turns, q, w * c - z * s, x * c + y * s, y * c - x * s, z * c + w * s);
 }
 
-function multiply(turns, q, [bw, bx, by, bz]) {
+function multiply(turns, q, b) {
+  const bw = b[0];
+  const bx = b[1];
+  const by = b[2];
+  const bz = b[3];
   const w = turns[q];
   const x = turns[q + 1];
   const y = turns[q + 2];
