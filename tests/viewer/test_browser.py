@@ -12,6 +12,7 @@ from browsing import LAPTOP, PHONE, Visit, chromium, coloured
 from playwright.sync_api import Browser
 
 import mocapress as mp
+from mocapress import diffma_json
 from mocapress.viewer import embed, page
 
 
@@ -209,6 +210,33 @@ def test_diffma_json_plays(visit: Visit, samples: Path, tmp_path: Path) -> None:
     visit.drop(("bad.diffma.json", file.read_bytes().replace(b'"bits":6', b'"bits":66')))
     visit.until("document.querySelector('.notice') !== null")
     assert visit.text(".notice").startswith("bad.diffma.json: $.params.bits: expected 1 to 12")
+
+
+DECODE = """async ([modules, text]) => {
+    const urls = new Map();
+    for (const [path, source] of modules) {
+        const named = source.replace(/"module:([^"]+)"/g, (_, name) => `"${urls.get(name)}"`);
+        urls.set(path, URL.createObjectURL(new Blob([named], {type: "text/javascript"})));
+    }
+    const {decode} = await import(urls.get("diffma/diffma.js"));
+    return decode(text).channels.map((channel) =>
+        Array.from(new BigUint64Array(channel.buffer, channel.byteOffset, channel.length), String));
+}"""
+
+
+@pytest.mark.parametrize("name", ["cmu_01_01.amc", "freebvh.bvh"])
+@pytest.mark.parametrize("codec", ["bound=4", "bits=8,order=auto,per=channel,max_error=0.01"])
+def test_the_browser_decodes_bit_for_bit(
+    visit: Visit, samples: Path, name: str, codec: str
+) -> None:
+    text = mp.to_json(samples / name, f"diffma:{codec}")
+    modules = [[k, v] for k, v in page.modules().items() if k.startswith("diffma/")]
+    visit.page.goto("about:blank")
+    bits = visit.page.evaluate(DECODE, [modules, text.decode()])
+    expected = diffma_json.json_to_clip(text).values
+    np.testing.assert_array_equal(
+        np.array(bits, dtype=np.uint64).T, np.ascontiguousarray(expected).view(np.uint64)
+    )
 
 
 def test_a_broken_file_is_told_of(visit: Visit, samples: Path, tmp_path: Path) -> None:
