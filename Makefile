@@ -34,7 +34,7 @@ sanitize: $(fuzzers) $(VENV)/.built
 	    $$target $$(ls -d core/fuzz/seeds/$$(basename $$target)/* 2>/dev/null) -runs=$(FUZZ_RUNS) \
 	    || exit 1; done
 
-build/fuzz/%: core/fuzz/fuzz_%.cpp core/fuzz/driver.cpp $(kernels) $(wildcard core/*.hpp)
+build/fuzz/%: core/fuzz/fuzz_%.cpp core/fuzz/driver.cpp $(kernels) $(wildcard core/*.hpp core/fuzz/*.hpp)
 	@mkdir -p build/fuzz
 	$(CXX) $(SANITIZE) $< core/fuzz/driver.cpp $(kernels) -o $@
 

@@ -7,6 +7,7 @@ namespace mocapress {
 
 void bind_text(nanobind::module_& module);
 void bind_app(nanobind::module_& module);
+void bind_exact(nanobind::module_& module);
 void bind_diffma(nanobind::module_& module);
 
 }  // namespace mocapress

@@ -21,12 +21,22 @@ using ByteView = std::span<const std::uint8_t>;
 // The chance that a bit is 0, learned at two rates: the fast follows changes, the slow is precise.
 class Bit {
  public:
+  Bit() = default;
+  explicit Bit(std::uint16_t chance_of_zero) : fast_(chance_of_zero), slow_(chance_of_zero) {}
+
   // In 1/65536, from 15 to 65521.
   std::uint32_t chance_of_zero() const { return (std::uint32_t{fast_} + slow_) >> 1; }
 
   void learn(bool one) {
     fast_ = moved<4>(fast_, one);
     slow_ = moved<7>(slow_, one);
+  }
+
+  // What was learned, for a coder that begins where another ended.
+  template <class Visit>
+  void visit(Visit&& each) {
+    each(fast_);
+    each(slow_);
   }
 
  private:
@@ -43,19 +53,20 @@ class Bit {
 class Encoder {
  public:
   void bit(Bit& model, bool one) {
-    const std::uint64_t bound = (range_ >> 16) * model.chance_of_zero();
+    chance(model.chance_of_zero(), one);
     model.learn(one);
-    if (one) {
-      low_ += bound;
-      if (low_ < bound) carry();
-      range_ -= bound;
-    } else {
-      range_ = bound;
-    }
-    if (range_ >> 32 == 0) {
-      append(4);
-      range_ <<= 32;
-    }
+  }
+
+  // A bit whose chance of being 0 is 0 < chance_of_zero < 65536, in 1/65536.
+  void chance(std::uint32_t chance_of_zero, bool one) {
+    const std::uint64_t bound = (range_ >> 16) * chance_of_zero;
+    narrow(one ? bound : 0, one ? range_ - bound : bound);
+  }
+
+  // `value` < count <= 2^17, all equally likely.
+  void uniform(std::uint64_t value, std::uint64_t count) {
+    const std::uint64_t each = range_ / count;
+    narrow(each * value, each);
   }
 
   // `value` < 2^count, count <= 64.
@@ -84,6 +95,16 @@ class Encoder {
   }
 
  private:
+  void narrow(std::uint64_t from, std::uint64_t range) {
+    low_ += from;
+    if (low_ < from) carry();
+    range_ = range;
+    if (range_ >> 32 == 0) {
+      append(4);
+      range_ <<= 32;
+    }
+  }
+
   void carry() {
     for (std::size_t i = coded_.size(); i-- > 0 && ++coded_[i] == 0;) {
     }
@@ -141,16 +162,23 @@ class Decoder {
   }
 
   bool bit(Bit& model) {
-    const std::uint64_t bound = (range_ >> 16) * model.chance_of_zero();
-    const bool one = code_ >= bound;
+    const bool one = chance(model.chance_of_zero());
     model.learn(one);
-    code_ -= one ? bound : 0;
-    range_ = one ? range_ - bound : bound;
-    if (range_ >> 32 == 0) {
-      code_ = code_ << 32 | next_code_word();
-      range_ <<= 32;
-    }
     return one;
+  }
+
+  bool chance(std::uint32_t chance_of_zero) {
+    const std::uint64_t bound = (range_ >> 16) * chance_of_zero;
+    const bool one = code_ >= bound;
+    narrow(one ? bound : 0, one ? range_ - bound : bound);
+    return one;
+  }
+
+  std::uint64_t uniform(std::uint64_t count) {
+    const std::uint64_t each = range_ / count;
+    const std::uint64_t value = std::min(code_ / each, count - 1);
+    narrow(each * value, each);
+    return value;
   }
 
   // count <= 64
@@ -181,6 +209,15 @@ class Decoder {
   }
 
  private:
+  void narrow(std::uint64_t from, std::uint64_t range) {
+    code_ -= from;
+    range_ = range;
+    if (range_ >> 32 == 0) {
+      code_ = code_ << 32 | next_code_word();
+      range_ <<= 32;
+    }
+  }
+
   std::uint32_t next_code_word() {
     std::uint32_t word = 0;
     for (std::size_t i = 0; i < 4; ++i) word = word << 8 | byte(coded_, coded_read_ + i);
@@ -216,7 +253,14 @@ class Decoder {
 template <int kBits>
 class BitTree {
  public:
-  void encode(Encoder& encoder, unsigned symbol) {
+  BitTree() = default;
+  // The chances of a 0 at first, in 1/65536, from 15 to 65520, by the prefix.
+  explicit BitTree(const std::array<std::uint16_t, std::size_t{1} << kBits>& chances) {
+    for (std::size_t i = 0; i < chances.size(); ++i) models_[i] = Bit(chances[i]);
+  }
+
+  template <class AnyEncoder>
+  void encode(AnyEncoder& encoder, unsigned symbol) {
     unsigned prefix = 1;
     for (int i = kBits; i-- > 0;) {
       const unsigned one = symbol >> i & 1;
@@ -225,10 +269,16 @@ class BitTree {
     }
   }
 
-  unsigned decode(Decoder& decoder) {
+  template <class AnyDecoder>
+  unsigned decode(AnyDecoder& decoder) {
     unsigned prefix = 1;
     for (int i = kBits; i-- > 0;) prefix = prefix << 1 | (decoder.bit(models_[prefix]) ? 1 : 0);
     return prefix - (1u << kBits);
+  }
+
+  template <class Visit>
+  void visit(Visit&& each) {
+    for (auto& model : models_) model.visit(each);
   }
 
  private:

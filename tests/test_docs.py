@@ -31,7 +31,7 @@ def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     shutil.copy(ROOT / "samples/freebvh.bvh", tmp_path / "clips")
     monkeypatch.chdir(tmp_path)
     commands = re.findall(r"^\$ mocapress (.*?)(?:  #.*)?$", README, re.MULTILINE)
-    assert len(commands) == 10
+    assert len(commands) == 12
     for command in commands:
         if command.startswith("decompress"):
             Path("walk.amc").rename("original.amc")

@@ -10,32 +10,16 @@
 #include <vector>
 
 #include "../app.hpp"
+#include "input.hpp"
 
 namespace app = mocapress::app;
 using mocapress::Bytes;
 using mocapress::ByteView;
+using mocapress::fuzz::Input;
 
 namespace {
 
 constexpr double kAlphas[] = {-1, -0.5, -0.25, 0, 0.25, 0.5, 1, 2};
-
-// Takes the settings of a run from the front of the input.
-class Input {
- public:
-  explicit Input(ByteView bytes) : bytes_(bytes) {}
-
-  unsigned below(unsigned bound) {
-    if (bytes_.empty()) return 0;
-    const unsigned byte = bytes_.front();
-    bytes_ = bytes_.subspan(1);
-    return byte % bound;
-  }
-
-  ByteView rest() const { return bytes_; }
-
- private:
-  ByteView bytes_;
-};
 
 bool decodes(ByteView payload, std::vector<double>& values, std::size_t frames,
              std::span<const app::Column> columns, const app::Parameters& parameters) {

@@ -71,6 +71,29 @@ def snap(values: NDArray[np.float64], plan: NDArray[np.int32]) -> None: ...
 def encode_differences(differences: NDArray[np.int64]) -> bytes: ...
 def decode_differences(coded: bytes, differences: NDArray[np.int64]) -> None: ...
 
+# A plan is (C, 6) int32: line, digits, noise, exponent, turns, place; couplings are kind,
+# sources, targets, parameters; see core/exact.hpp and core/number_line.hpp.
+
+def exact_lines(values: NDArray[np.float64]) -> list[tuple[int, int]]: ...
+def exact_law(kind: int, columns: NDArray[np.float64]) -> NDArray[np.float64]: ...
+def exact_guesses(values: NDArray[np.float64], places: list[int]) -> NDArray[np.float64]: ...
+def exact_encode(
+    values: NDArray[np.float64],
+    plan: NDArray[np.int32],
+    couplings: list[tuple[int, list[int], list[int], list[float]]],
+    level: int,
+    start: tuple[list[float], list[list[float]]],
+    learn: bool,
+) -> tuple[bytes, tuple[list[float], list[list[float]]]]: ...
+def exact_decode(
+    payload: bytes,
+    values: NDArray[np.float64],
+    plan: NDArray[np.int32],
+    couplings: list[tuple[int, list[int], list[int], list[float]]],
+    level: int,
+    start: tuple[list[float], list[list[float]]],
+) -> None: ...
+
 # One channel of DiffMA; see core/diffma.hpp.
 
 def diffma_encode(

@@ -65,6 +65,9 @@ FILES = {
     ),
     "v1_walk.bvh": ((BVH + bvh_rows()).encode(), "app:mantissa_limit=53"),
     "v1_bytes.bin": (bytes(range(256)) * 3, "app"),
+    "v1_exact.amc": (amc("\r\n").encode(), "exact"),
+    "v1_exact_strong.amc": (amc("\n").encode(), "exact:level=9,chunk=100"),
+    "v1_exact_fast.bvh": ((BVH + bvh_rows()).encode(), "exact:level=1"),
     "v1_lossy.amc": (amc("\n").encode(), "diffma:bits=7,chunk=100"),
     "v1_lossy.bvh": (
         (BVH + bvh_rows()).encode(),

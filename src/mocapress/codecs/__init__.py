@@ -26,12 +26,13 @@ __all__ = [
     "with_level",
 ]
 
-DEFAULT_CODEC = "app"
+DEFAULT_CODEC = "exact"
 LEVELS = range(1, 10)
 """From the fastest to the strongest, of codecs with the parameter ``level``."""
 
 # id -> module and class; imported when first asked for, so that one codec does not pay for others.
 _REGISTRY: dict[str, tuple[str, str]] = {
+    "exact": ("mocapress.codecs.exact", "Exact"),
     "app": ("mocapress.codecs.app", "App"),
     "diffma": ("mocapress.codecs.diffma", "DiffMA"),
 }

@@ -7,9 +7,9 @@ snapped to the column's decimal grid.
 """
 
 from collections.abc import Sequence
-from itertools import groupby
 
 from mocapress.binary import Reader, Writer
+from mocapress.codecs.runs import read_runs, write_runs
 
 PRECISIONS = 3
 
@@ -17,8 +17,8 @@ PRECISIONS = 3
 def pack_header(parents: Sequence[int], precisions: Sequence[int]) -> bytes:
     """Make the header of columns with these parents (-1 for none) and precisions."""
     writer = Writer()
-    _write_runs(writer, [_distance(column, parent) for column, parent in enumerate(parents)])
-    _write_runs(writer, precisions)
+    write_runs(writer, [_distance(column, parent) for column, parent in enumerate(parents)])
+    write_runs(writer, precisions)
     return bytes(writer.data)
 
 
@@ -32,8 +32,8 @@ def unpack_header(header: bytes, columns: int) -> tuple[list[int], list[int]]:
 
     """
     reader = Reader(header, "APP header")
-    distances = _read_runs(reader, columns, 2 * columns)
-    precisions = _read_runs(reader, columns, PRECISIONS - 1)
+    distances = read_runs(reader, columns, 2 * columns)
+    precisions = read_runs(reader, columns, PRECISIONS - 1)
     reader.end()
     parents = [_parent(column, distance) for column, distance in enumerate(distances)]
     if any(not -1 <= parent < columns for parent in parents):
@@ -54,19 +54,3 @@ def _parent(column: int, distance: int) -> int:
     # A parent before the first column would read as "none".
     parent = column + half if distance % 2 else column - half
     return parent if parent >= 0 else -2
-
-
-def _write_runs(writer: Writer, values: Sequence[int]) -> None:
-    for value, run in groupby(values):
-        writer.integer(value)
-        writer.integer(sum(1 for _ in run))
-
-
-def _read_runs(reader: Reader, count: int, most: int) -> list[int]:
-    values: list[int] = []
-    while len(values) < count:
-        value, run = reader.integer(most), reader.integer(count - len(values))
-        if run == 0:
-            raise reader.fail("an empty run")
-        values += [value] * run
-    return values

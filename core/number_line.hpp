@@ -1,0 +1,75 @@
+// The numbers that a column can hold, in order: each has a place, a whole number, so that a codec
+// may code places around a prediction instead of the bits of a float.
+#pragma once
+
+#include <cstdint>
+
+namespace mocapress {
+
+// The kinds of mocapress.model.NumberFormat, of which SCIENTIFIC is `significant` with one digit
+// more; `float64` has a place for every bit pattern, and so for everything.
+// `printed32` and `degrees32` are what is left of float32 numbers, and of float32 radians in
+// degrees, when they are printed with so many decimals.
+enum class Line : std::uint8_t {
+  float64,
+  float32,
+  significant,
+  decimals,
+  shortest32,
+  printed32,
+  degrees32
+};
+
+class NumberLine {
+ public:
+  NumberLine(Line line, int digits);
+
+  // The place of a number. Only where number(place(x)) has the bits of x is x on the line.
+  std::int64_t place(double number) const;
+  double number(std::int64_t place) const;
+
+  // A place next to any number but NaN, on the line or not. Never smaller for a larger number, and
+  // the same on every machine: a coder needs no more.
+  std::int64_t near(double number) const;
+
+  // The distance between the numbers near `value`.
+  double step(double value) const;
+
+  bool significant() const { return line_ == Line::significant; }
+
+  // The place where the numbers of the decade 10^exponent begin; only for `significant` lines.
+  std::int64_t decade(int exponent) const;
+  // The decade of a place > 0.
+  int decade_of(std::int64_t place) const {
+    return static_cast<int>((place - 1) / per_decade_) + kLowestExponent;
+  }
+  // floor(log10(magnitude)), within what the line can hold.
+  static int decimal_exponent(double magnitude);
+  static double power_of_ten(int exponent);
+
+  static constexpr int kLowestExponent = -307;
+  static constexpr int kHighestExponent = 308;
+
+ private:
+  std::int64_t magnitude_place(double magnitude) const;
+  double magnitude_number(std::int64_t place) const;
+  std::int64_t decimal_place(double magnitude) const;
+  std::int64_t printed_place(double magnitude) const;
+  double printed_number(std::int64_t place) const;
+  bool printed() const { return line_ == Line::printed32 || line_ == Line::degrees32; }
+
+  Line line_;
+  int digits_;
+  std::int64_t per_decade_ = 0;
+  double scale_ = 1;
+  // Of printed lines: degrees in a radian or 1, the bits of the first float that is further from
+  // the next than decimals are, and its place.
+  double unit_ = 1;
+  std::int64_t coarse_bits_ = 0;
+  std::int64_t coarse_place_ = 0;
+};
+
+// Whether a line of this kind can have as many digits.
+bool line_exists(int line, int digits);
+
+}  // namespace mocapress

@@ -1,0 +1,278 @@
+"""What each column is to the codec, found once per clip, and the header that says so."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress import _core
+from mocapress.binary import Reader, Writer
+from mocapress.codecs.exact.skeletons import PLACES
+from mocapress.codecs.runs import read_runs, write_runs
+
+_NOISE = 1e-10
+_USUAL_MOVE = -3
+_EXPONENT_STEP = 8
+_MOVES = 300
+_MOST_EXPONENT = 1000
+_LINE_DIGITS = 32
+_HALF_TURN = 180
+_JUMP = 300
+_JOINT_PARAMETERS = 7
+_JOINT_SHAPES = 243
+_MOST_BITS = 40
+
+
+class Role(IntEnum):
+    """How a column is coded."""
+
+    PREDICTED = 0
+    CONSTANT = 1
+    """The first row's bits in every row; they stand in the header."""
+    COPY = 2
+    """The bits of an earlier column."""
+    NOISE = 3
+    """Rounding noise: more than half of the numbers are below 1e-10 but not 0."""
+
+
+class CouplingKind(IntEnum):
+    """By what the targets of a coupling follow from its sources; core/exact_law.hpp, _joint.hpp."""
+
+    POLYNOMIAL = 0
+    SPINE = 1
+    NECK = 2
+    THUMB = 3
+    OTHER_THUMB = 4
+    JOINT = 5
+    SPINE_MIDDLE = 6
+    NECK_MIDDLE = 7
+
+
+# Kinds whose sources change places with the targets, too.
+_REORDERED = (CouplingKind.JOINT, CouplingKind.SPINE_MIDDLE, CouplingKind.NECK_MIDDLE)
+
+
+@dataclass(frozen=True, slots=True)
+class Coupling:
+    """Columns that are a function of others in the same frame."""
+
+    kind: CouplingKind
+    sources: tuple[int, ...]
+    targets: tuple[int, ...]
+    """In the order in which they are coded; all behind the sources."""
+    parameters: tuple[int, ...] = ()
+    """Of a joint: shape, bits, and u, v, c as multiples of 2^-bits, a one left out of u and v."""
+
+
+@dataclass(frozen=True, slots=True)
+class Roles:
+    """What the compiled coder is told, and how its columns make up the clip's."""
+
+    roles: tuple[Role, ...]
+    originals: tuple[int, ...]
+    """Per column: which column it copies; its own index where it copies none."""
+    lines: tuple[tuple[int, int], ...]
+    """Per column: line of numbers and digits, of core/number_line.hpp."""
+    exponents: tuple[int, ...]
+    """Per column: numbers times 2^exponent are about as large as angles in degrees."""
+    turns: tuple[int, ...]
+    """Per column: 1 or 2 for degrees from -180 or 0 on that jump by whole turns, else 0."""
+    couplings: tuple[Coupling, ...]
+    places: bool
+    """Whether the columns are the channels of the skeleton that the compiled coder knows."""
+
+    def of(self, *roles: Role) -> list[int]:
+        """Give the columns of some roles, role by role."""
+        return [c for role in roles for c, own in enumerate(self.roles) if own is role]
+
+    @property
+    def coded(self) -> list[int]:
+        """The columns that chunks hold, in the order of the compiled coder: noise comes last."""
+        columns = self.of(Role.PREDICTED, Role.NOISE)
+        # Columns change places with each other where a law has another order than the file.
+        for coupling in self.couplings:
+            moved = coupling.targets
+            if coupling.kind in _REORDERED:
+                moved = (*coupling.sources, *moved)
+            places = sorted(columns.index(column) for column in moved)
+            for place, column in zip(places, moved, strict=True):
+                columns[place] = column
+        return columns
+
+    def coupled(self) -> list[tuple[int, list[int], list[int], list[float]]]:
+        """Give the couplings as the compiled coder has them, in places among ``coded``."""
+        place = {column: i for i, column in enumerate(self.coded)}
+        return [
+            (
+                coupling.kind,
+                [place[c] for c in coupling.sources],
+                sorted(place[c] for c in coupling.targets),
+                _numbers(coupling.parameters),
+            )
+            for coupling in self.couplings
+        ]
+
+    def plan(self, columns: Sequence[int]) -> NDArray[np.int32]:
+        """Give the plan of columns for the compiled coder, (n, 6): see core/exact.hpp."""
+        rows = [
+            (
+                *self.lines[c],
+                self.roles[c] is Role.NOISE,
+                self.exponents[c],
+                self.turns[c],
+                c if self.places else -1,
+            )
+            for c in columns
+        ]
+        return np.array(rows, dtype=np.int32).reshape(-1, 6)
+
+
+def _numbers(parameters: Sequence[int]) -> list[float]:
+    """Give the parameters of a joint as core/exact_joint.hpp has them."""
+    if not parameters:
+        return []
+    shape, bits, *multiples = parameters
+    ones, shape = divmod(shape, _JOINT_SHAPES)
+    numbers = [multiple / 2**bits for multiple in multiples]
+    numbers.insert(ones % 3, 1.0)
+    numbers.insert(3 + ones // 3, 1.0)
+    return [float(shape), *numbers]
+
+
+def find_roles(
+    values: NDArray[np.float64],
+    couple: Callable[[list[int], Sequence[tuple[int, int]]], list[Coupling]],
+    *,
+    places: bool = False,
+) -> Roles:
+    """Find the role of each column of (F, C) values; ``couple`` finds couplings of columns."""
+    bits = values.view(np.uint64)
+    constant = (bits == bits[:1]).all(axis=0)
+    noise = ((np.abs(values) < _NOISE) & (values != 0)).mean(axis=0) > 1 / 2
+    roles, originals = [], list(range(values.shape[1]))
+    first: dict[bytes, int] = {}
+    for column in range(values.shape[1]):
+        role = Role.NOISE if noise[column] else Role.PREDICTED
+        if constant[column]:
+            role = Role.CONSTANT
+        else:
+            originals[column] = first.setdefault(bits[:, column].tobytes(), column)
+            role = role if originals[column] == column else Role.COPY
+        roles.append(role)
+    lines = _core.exact_lines(values)
+    predicted = [c for c, role in enumerate(roles) if role is Role.PREDICTED]
+    return Roles(
+        tuple(roles),
+        tuple(originals),
+        tuple(lines),
+        tuple(_exponents(values, roles)),
+        tuple(_turns(values, roles)),
+        tuple(couple(predicted, lines)),
+        places,
+    )
+
+
+def _turns(values: NDArray[np.float64], roles: Sequence[Role]) -> Iterator[int]:
+    """Tell which columns are angles in degrees that jump at the ends of their range."""
+    lows, highs = values.min(axis=0), values.max(axis=0)
+    for column, (low, high) in enumerate(zip(lows, highs, strict=True)):
+        wide = low >= -_HALF_TURN and low + _JUMP < high <= low + 2 * _HALF_TURN
+        if not wide or roles[column] is not Role.PREDICTED:
+            yield 0
+        elif (np.abs(np.diff(values[:, column])) > _JUMP).any():
+            yield 2 if low >= 0 else 1 if high <= _HALF_TURN else 0
+        else:
+            yield 0
+
+
+def _exponents(values: NDArray[np.float64], roles: Sequence[Role]) -> Iterator[int]:
+    """Give the powers of two, in whole steps of 2^8, that make the usual moves about 1/8."""
+    every = len(values) // _MOVES + 1
+    with np.errstate(invalid="ignore", over="ignore"):
+        moves = np.abs(values[1::every] - values[:-1:every])
+    moving = np.isfinite(moves) & (moves > 0)
+    for column, role in enumerate(roles):
+        found = moves[moving[:, column], column]
+        if role is not Role.PREDICTED or len(found) == 0:
+            yield 0
+            continue
+        usual = np.frexp(np.median(found))[1]
+        exponent = _EXPONENT_STEP * round((_USUAL_MOVE - int(usual)) / _EXPONENT_STEP)
+        yield max(-_MOST_EXPONENT, min(_MOST_EXPONENT, exponent))
+
+
+def write_roles(writer: Writer, roles: Roles) -> None:
+    """Append the roles to a codec header."""
+    told = zip(roles.roles, roles.turns, strict=True)
+    write_runs(writer, [role + len(Role) * turns for role, turns in told])
+    write_runs(writer, [line * _LINE_DIGITS + digits for line, digits in roles.lines])
+    write_runs(writer, [2 * e if e >= 0 else -2 * e - 1 for e in roles.exponents])
+    for column in roles.of(Role.COPY):
+        writer.integer(column - roles.originals[column] - 1)
+    writer.integer(len(roles.couplings))
+    for coupling in roles.couplings:
+        writer.integer(coupling.kind)
+        for side in (coupling.sources, coupling.targets):
+            writer.integer(len(side))
+            for column in side:
+                writer.integer(column)
+        for parameter in coupling.parameters:
+            writer.signed(parameter)
+    writer.integer(roles.places)
+
+
+def read_roles(reader: Reader, columns: int) -> Roles:
+    """Take the roles of as many columns.
+
+    Raises
+    ------
+    CorruptError
+        When they are not such as ``write_roles`` writes.
+
+    """
+    told = [divmod(code, len(Role)) for code in read_runs(reader, columns, 3 * len(Role) - 1)]
+    roles = tuple(Role(role) for _, role in told)
+    lines = [
+        divmod(line, _LINE_DIGITS) for line in read_runs(reader, columns, 7 * _LINE_DIGITS - 1)
+    ]
+    exponents = [
+        code // 2 if code % 2 == 0 else -(code + 1) // 2
+        for code in read_runs(reader, columns, 2 * _MOST_EXPONENT)
+    ]
+    originals = list(range(columns))
+    for column, role in enumerate(roles):
+        if role is Role.COPY:
+            originals[column] = column - 1 - reader.integer(2**20)
+            if originals[column] < 0 or roles[originals[column]] is Role.COPY:
+                raise reader.fail("a column copies one that is not there")
+    couplings = tuple(_read_coupling(reader, roles) for _ in range(reader.count(5)))
+    places = reader.integer(1) == 1
+    if places and columns != PLACES:
+        raise reader.fail("the channels of a skeleton that has others")
+    return Roles(
+        roles,
+        tuple(originals),
+        tuple(lines),
+        tuple(exponents),
+        tuple(turns for turns, _ in told),
+        couplings,
+        places,
+    )
+
+
+def _read_coupling(reader: Reader, roles: Sequence[Role]) -> Coupling:
+    kind = CouplingKind(reader.integer(max(CouplingKind)))
+    sources, targets = (
+        tuple(reader.integer(len(roles) - 1) for _ in range(reader.count())) for _ in range(2)
+    )
+    chosen = (*sources, *targets)
+    if len(set(chosen)) < len(chosen) or any(roles[c] is not Role.PREDICTED for c in chosen):
+        raise reader.fail("a coupling of columns that are not predicted")
+    parameters: tuple[int, ...] = ()
+    if kind is CouplingKind.JOINT:
+        parameters = tuple(reader.signed() for _ in range(_JOINT_PARAMETERS))
+        if not (0 <= parameters[0] < 9 * _JOINT_SHAPES and 0 <= parameters[1] <= _MOST_BITS):
+            raise reader.fail("a joint of impossible shape")
+    return Coupling(kind, sources, targets, parameters)

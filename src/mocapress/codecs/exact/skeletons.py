@@ -1,0 +1,44 @@
+"""Which clips move the skeleton whose geometry the compiled coder knows.
+
+Nothing is taken from names: what counts is which channels the joints have, one after the other.
+core/exact_kinematics_tables.hpp has the skeleton, that of the CMU motion capture database.
+"""
+
+from collections.abc import Sequence
+from itertools import groupby
+
+from mocapress.model import Column
+
+_ARM = ("ry rz", "rx ry rz", "rx", "ry", "rx rz", "rx", "rx rz")
+_LEG = ("rx ry rz", "rx", "rx rz", "rx")
+_JOINTS = ("tx ty tz rx ry rz", *("rx ry rz",) * 6, *_ARM, *_ARM, *_LEG, *_LEG)
+
+PLACES = sum(len(joint.split()) for joint in _JOINTS)
+"""Number of the skeleton's channels."""
+
+
+_USUAL = {1: "x", 2: "xz", 3: "xyz"}
+
+
+def axes(joint: Sequence[Column]) -> str:
+    """Give the axes of a joint's channels; of an AMC without its skeleton, the usual ones."""
+    if all(column.kind[0] == "v" for column in joint):
+        return _USUAL.get(len(joint), "")
+    return "".join(column.kind[-1] for column in joint)
+
+
+def is_known(columns: Sequence[Column]) -> bool:
+    """Tell whether columns are the known skeleton's channels, in its order, angles in degrees.
+
+    Of an AMC without its skeleton, how many channels the joints have must do.
+    """
+    joints = [list(group) for _, group in groupby(columns, lambda column: column.joint)]
+    return (
+        len(joints) == len(_JOINTS)
+        and all(
+            kinds == " ".join(column.kind for column in joint)
+            or (joint[0].kind[0] == "v" and len(kinds.split()) == len(joint))
+            for joint, kinds in zip(joints, _JOINTS, strict=True)
+        )
+        and all(column.unit == "deg" for column in columns if column.kind[0] == "r")
+    )

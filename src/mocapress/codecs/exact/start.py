@@ -1,0 +1,76 @@
+"""What the codec begins with: nothing, or what it had learned at the end of other clips."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress.binary import Reader, Writer
+from mocapress.codecs.contract import Model
+
+Learned = tuple[list[float], list[list[float]]]
+"""As the compiled coder has it: by all columns, and by each of the coded columns."""
+
+_MANTISSA = np.uint32(0xFFFFF000)
+
+
+@dataclass(slots=True)
+class Start:
+    """What was learned, by columns of the clip."""
+
+    shared: list[float] = field(default_factory=list)
+    columns: dict[int, list[float]] = field(default_factory=dict)
+
+    def of(self, coded: Sequence[int]) -> Learned:
+        """Give it to a coder of these columns."""
+        return self.shared, [self.columns.get(column, []) for column in coded]
+
+    def take(self, coded: Sequence[int], learned: Learned) -> None:
+        """Take it over from a coder of these columns."""
+        self.shared = learned[0]
+        self.columns.update(zip(coded, learned[1], strict=True))
+
+
+def model_of(codec: str, start: Start) -> Model:
+    """Give the model of a start, its numbers rounded to eleven binary digits."""
+    writer = Writer()
+    _write(writer, start.shared)
+    writer.integer(len(start.columns))
+    for column, numbers in sorted(start.columns.items()):
+        writer.integer(column)
+        _write(writer, numbers)
+    return Model(codec, bytes(writer.data))
+
+
+def start_of(model: Model | None) -> Start:
+    """Give the start of a model.
+
+    Raises
+    ------
+    CorruptError
+        When the model's payload is not what ``model_of`` makes.
+
+    """
+    if model is None:
+        return Start()
+    reader = Reader(model.payload, "exact model")
+    shared = _read(reader)
+    columns = {reader.integer(): _read(reader) for _ in range(reader.count(2))}
+    reader.end()
+    return Start(shared, columns)
+
+
+def _write(writer: Writer, numbers: Sequence[float]) -> None:
+    bits = np.array(numbers, dtype="<f4").view("<u4")
+    writer.bytes((bits & _MANTISSA).tobytes())
+
+
+def _read(reader: Reader) -> list[float]:
+    data = reader.bytes()
+    if len(data) % 4:
+        raise reader.fail("a list of numbers cut off")
+    numbers: NDArray[np.float32] = np.frombuffer(data, dtype="<f4")
+    if not np.isfinite(numbers).all() or (np.abs(numbers) > 1e29).any():
+        raise reader.fail("numbers that were not learned")
+    return [float(number) for number in numbers]

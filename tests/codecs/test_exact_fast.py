@@ -1,0 +1,217 @@
+"""The fast levels of ``exact``: every number on every line comes back, and cheaply."""
+
+import lzma
+from pathlib import Path
+
+import exact_fast_reference as reference
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+import mocapress as mp
+from mocapress import _core, codecs
+from mocapress.errors import CorruptError
+from mocapress.model import Clip
+
+Values = NDArray[np.float64]
+LEVELS = (1, 2)
+FLOAT64, FLOAT32, SIGNIFICANT, DECIMALS, SHORTEST32, PRINTED32, DEGREES32 = range(7)
+LINES = [
+    (FLOAT64, 0),
+    (FLOAT32, 0),
+    (SHORTEST32, 0),
+    (PRINTED32, 6),
+    (DEGREES32, 6),
+    *((SIGNIFICANT, digits) for digits in (1, 2, 6, 9, 15)),
+    *((DECIMALS, digits) for digits in (0, 4, 6, 15)),
+]
+
+
+def plan(
+    columns: int, line: tuple[int, int], noise: int = 0, exponent: int = 0
+) -> NDArray[np.int32]:
+    """Give columns of one line, the last of them noise."""
+    rows = [(*line, c >= columns - noise, exponent, 0, -1) for c in range(columns)]
+    return np.array(rows, dtype=np.int32).reshape(-1, 6)
+
+
+def payload_of(values: Values, told: NDArray[np.int32], level: int) -> bytes:
+    return _core.exact_encode(np.ascontiguousarray(values), told, [], level, ([], []), False)[0]
+
+
+def decoded(payload: bytes, shape: tuple[int, ...], told: NDArray[np.int32], level: int) -> Values:
+    values = np.empty(shape)
+    _core.exact_decode(payload, values, told, [], level, ([], []))
+    return values
+
+
+def assert_comes_back(values: Values, told: NDArray[np.int32], level: int) -> bytes:
+    payload = payload_of(values, told, level)
+    assert decoded(payload, values.shape, told, level).tobytes() == values.tobytes()
+    return payload
+
+
+def on_line(values: Values, line: tuple[int, int]) -> Values:
+    """Round as the line's text does."""
+    kind, digits = line
+    if kind == FLOAT64:
+        return values
+    if kind == FLOAT32:
+        return values.astype(np.float32).astype(np.float64)
+    if kind in (PRINTED32, DEGREES32):
+        unit = 57.29577951308232 if kind == DEGREES32 else 1
+        printed = (values / unit).astype(np.float32).astype(np.float64) * unit
+        return on_line(printed, (DECIMALS, digits))
+    if kind == SHORTEST32:
+        texts = [str(x) for x in values.astype(np.float32).ravel()]
+    elif kind == SIGNIFICANT:
+        texts = [f"{x:.{digits - 1}e}" for x in values.ravel()]
+    else:
+        texts = [f"{x:.{digits}f}" for x in values.ravel()]
+    return np.array([float(text) for text in texts]).reshape(values.shape)
+
+
+def walk(frames: int, columns: int, size: float = 1, seed: int = 0) -> Values:
+    """Give smooth motion that crosses zero and many decades."""
+    steps = np.random.default_rng(seed).normal(size=(frames, columns))
+    return size * np.cumsum(np.cumsum(steps, axis=0) * 0.02, axis=0)
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_the_sample_is_smaller_than_what_xz_makes_of_it(samples: Path, level: int) -> None:
+    data = (samples / "cmu_01_01.amc").read_bytes()
+    packed = mp.compress(data, f"exact:level={level}")
+    assert mp.decompress(packed) == data
+    assert 1.9 * len(packed) < len(lzma.compress(data, preset=9 | lzma.PRESET_EXTREME))
+
+
+def test_the_second_level_is_smaller(samples: Path) -> None:
+    for sample in ("cmu_01_01.amc", "mocapbank.bvh"):
+        data = (samples / sample).read_bytes()
+        first, second = (len(mp.compress(data, f"exact:level={level}")) for level in LEVELS)
+        assert second < first
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_fast_levels_need_no_more_than_a_chunk(samples: Path, level: int) -> None:
+    """Chunks of one frame cost what their numbers cost."""
+    clip = mp.read(samples / "cmu_01_01.amc")
+    few = Clip(clip.values[:20], clip.columns)
+    codec = codecs.codec(f"exact:level={level},chunk=1")
+    encoded = codec.encode(few)
+    assert len(encoded.chunks) == 20
+    for chunk in encoded.chunks:
+        row = codec.decode(encoded.header, [chunk], few.columns)
+        assert row.tobytes() == few.values[chunk.first : chunk.first + 1].tobytes()
+        assert len(chunk.payload) < 4 * few.values.shape[1]
+
+
+@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("line", LINES)
+@pytest.mark.parametrize("size", [1e-9, 1, 1e7])
+def test_motion_on_every_line_comes_back(line: tuple[int, int], size: float, level: int) -> None:
+    values = on_line(walk(300, 11, size), line)
+    for exponent in (0, 16, -400):
+        assert_comes_back(values, plan(11, line, exponent=exponent), level)
+
+
+@pytest.mark.parametrize("line", LINES)
+@given(
+    bits=st.lists(st.integers(0, 2**64 - 1), min_size=6, max_size=60), level=st.sampled_from(LEVELS)
+)
+def test_any_bits_on_every_line_come_back(
+    line: tuple[int, int], bits: list[int], level: int
+) -> None:
+    values = np.array(bits[: len(bits) // 3 * 3], dtype=np.uint64).view(np.float64).reshape(-1, 3)
+    assert_comes_back(values, plan(3, line), level)
+    assert_comes_back(values, plan(3, line, noise=2, exponent=900), level)
+
+
+@given(
+    numbers=st.lists(
+        st.sampled_from([0.0, -0.0, 1.0, -1.0, 9.99999, 10.0, 0.1, 0.0999999, -99.9999, 100.0])
+        | st.floats(-1000, 1000),
+        min_size=2,
+        max_size=50,
+    ),
+    line=st.sampled_from(LINES),
+    level=st.sampled_from(LEVELS),
+)
+def test_numbers_around_the_ends_of_decades_come_back(
+    numbers: list[float], line: tuple[int, int], level: int
+) -> None:
+    values = on_line(np.array(numbers).reshape(-1, 1), line)
+    assert_comes_back(values, plan(1, line), level)
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_crossing_a_decade_costs_little(level: int) -> None:
+    """The same motion around 50 and around 100 costs nearly the same: steps change exactly."""
+    line = (SIGNIFICANT, 6)
+    motion = walk(2000, 6)
+    motion *= 3 / np.abs(motion).max()
+    sizes = [
+        len(assert_comes_back(on_line(motion + place, line), plan(6, line), level))
+        for place in (50, 100)
+    ]
+    # Above 100 a digit is missing, in half of the frames.
+    assert sizes[1] < sizes[0]
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_rounding_noise_costs_less_than_its_digits(level: int) -> None:
+    random = np.random.default_rng(5)
+    radians = (2 * random.integers(-2000, 2000, (500, 2)) + 1) * 2.0**-60
+    values = on_line(np.degrees(radians), (SIGNIFICANT, 6))
+    payload = assert_comes_back(values, plan(2, (SIGNIFICANT, 6), noise=2), level)
+    assert len(payload) < values.size * 16 / 8
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_resting_channels_cost_next_to_nothing(level: int) -> None:
+    values = np.zeros((4000, 4))
+    values[:40] = on_line(walk(40, 4), (DECIMALS, 4))
+    payload = assert_comes_back(values, plan(4, (DECIMALS, 4)), level)
+    assert len(payload) < 1000
+
+
+@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("noise", [0, 1])
+def test_payloads_of_a_wrong_length_are_found_out(level: int, noise: int) -> None:
+    line = (SIGNIFICANT, 6)
+    values, told = on_line(walk(12, 4), line), plan(4, line, noise)
+    payload = payload_of(values, told, level)
+    wrong = [payload[:length] for length in range(len(payload))]
+    wrong += [payload + bytes(more) for more in range(1, 9)]
+    for broken in wrong:
+        with pytest.raises(ValueError, match="does not decode"):
+            decoded(broken, values.shape, told, level)
+
+
+def test_levels_are_not_mixed_up(samples: Path) -> None:
+    clip = mp.read(samples / "freebvh.bvh")
+    encoded = codecs.codec("exact:level=1").encode(clip)
+    for level in (2, 3):
+        with pytest.raises(CorruptError):
+            codecs.codec(f"exact:level={level}").decode(
+                encoded.header, encoded.chunks, clip.columns
+            )
+
+
+@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize(
+    ("kind", "line"),
+    [("significant", (SIGNIFICANT, 6)), ("decimals", (DECIMALS, 4)), ("float64", (FLOAT64, 0))],
+)
+def test_a_reader_made_from_the_description_agrees(
+    kind: str, line: tuple[int, int], level: int
+) -> None:
+    values = on_line(walk(60, 10, 3), line)
+    values[20:30, 3] = 0
+    values[40, 5], values[50, 6] = np.inf, 123456
+    payload = assert_comes_back(values, plan(10, line), level)
+    lines = [(kind, 53 if kind == "float64" else line[1])] * 10
+    found = reference.decode(payload, 60, lines, level)
+    assert np.array(found).tobytes() == values.tobytes()
