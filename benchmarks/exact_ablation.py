@@ -1,0 +1,149 @@
+"""Measures what each part of `exact` brings, its levels, and chunks of other lengths.
+
+    OPENBLAS_NUM_THREADS=1 python benchmarks/exact_ablation.py CORPUS/amc/cmu
+
+Takes every twelfth AMC clip, from the third on. Sizes are those of whole ``.mcz`` files without the
+ASF, each restored and compared; times those of the only thread (``time.thread_time``), of one run.
+"""
+
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from time import thread_time
+from typing import NamedTuple
+from unittest.mock import patch
+
+import numpy as np
+from numpy.typing import NDArray
+
+import mocapress
+from mocapress import api
+from mocapress.bench.tables import markdown
+from mocapress.codecs.exact import Exact, codec
+from mocapress.codecs.exact.roles import Role, Roles, _exponents, _turns
+from mocapress.container import Kind, parse
+from mocapress.formats.files import find_asf
+from mocapress.model import Clip, Column
+
+Array = NDArray[np.float64]
+Change = Callable[[Roles, Array], Roles]
+FIRST, EVERY, STRONGEST = 2, 12, 9
+CHUNKS = (512, 1024, 2048, 4096, WHOLE := 1 << 20)
+TIMES = ("find roles µs/frame", "encode µs/frame", "decode µs/frame")
+FLOAT64 = (0, 0)  # of core/number_line.hpp
+find_roles = codec._roles
+
+
+class Source(NamedTuple):
+    """A file, its skeleton, and what it holds."""
+
+    data: bytes
+    asf: bytes
+    clip: Clip
+
+
+def with_roles(roles: Roles, values: Array, told: Sequence[Role]) -> Roles:
+    """Have columns coded in other roles."""
+    exponents, turns = tuple(_exponents(values, told)), tuple(_turns(values, told))
+    return replace(roles, roles=tuple(told), exponents=exponents, turns=turns)
+
+
+def predicted(roles: Roles, values: Array) -> Roles:
+    """Have rounding noise coded like the usual columns."""
+    told = [Role.PREDICTED if role is Role.NOISE else role for role in roles.roles]
+    return with_roles(roles, values, told)
+
+
+def coded(roles: Roles, values: Array) -> Roles:
+    """Have copies coded like the columns that they copy."""
+    return with_roles(roles, values, [roles.roles[column] for column in roles.originals])
+
+
+def doubles(roles: Roles, _: Array) -> Roles:
+    """Have predicted columns hold any float64."""
+    told = zip(roles.lines, roles.roles, strict=True)
+    lines = tuple(FLOAT64 if role is Role.PREDICTED else line for line, role in told)
+    return replace(roles, lines=lines)
+
+
+PARTS: dict[str, Change] = {
+    "everything": lambda roles, _: roles,
+    "without geometry": lambda roles, _: replace(roles, places=False),
+    "without laws and couplings": lambda roles, _: replace(roles, couplings=()),
+    "without either": lambda roles, _: replace(roles, places=False, couplings=()),
+    "rounding noise predicted": predicted,
+    "copies coded": coded,
+    "float64 in place of decimal lines": doubles,
+}
+
+
+def size(source: Source, exact: Exact) -> int:
+    """Give the size of the file that the codec makes, be it larger than other ways would."""
+    with patch.object(api, "_POOR", 1):
+        made = api.compress_bytes(source.data, exact, asf_data=source.asf)
+    if made.warning or parse(made.blob).kind is not Kind.AMC:
+        sys.exit(made.warning or "the codec made no file")
+    return len(made.blob)
+
+
+def size_with(sources: Sequence[Source], change: Change) -> int:
+    """Give the size of all files with other roles."""
+
+    def roles(values: Array, columns: Sequence[Column], level: int) -> Roles:
+        return change(find_roles(values, columns, level), values)
+
+    with patch.object(codec, "_roles", roles):
+        return sum(size(source, Exact(level=STRONGEST)) for source in sources)
+
+
+def times(sources: Sequence[Source], exact: Exact) -> list[str]:
+    """Give µs per frame to find the roles, to encode besides, and to decode."""
+    spent = np.zeros(3)
+    for _, _, clip in sources:
+        begin = thread_time()
+        find_roles(np.ascontiguousarray(clip.values), clip.columns, exact.level)
+        found = thread_time()
+        encoded = exact.encode(clip)
+        coded = thread_time()
+        exact.decode(encoded.header, encoded.chunks, clip.columns)
+        finding, encoding, decoding = np.diff([begin, found, coded, thread_time()])
+        spent += finding, encoding - finding, decoding
+    return [f"{1e6 * time:.1f}" for time in spent / sum(s.clip.frames for s in sources)]
+
+
+def main(corpus: Path) -> None:
+    """Measure, and print the tables."""
+    sources = []
+    for path in sorted(corpus.rglob("*.amc"))[FIRST::EVERY]:
+        asf = find_asf(path)
+        skeleton = asf.read_bytes() if asf else b""
+        sources.append(Source(path.read_bytes(), skeleton, mocapress.read(path)))
+    raw = sum(len(source.data) for source in sources)
+    frames = [source.clip.frames for source in sources]
+    print(f"{len(sources)} clips, {sum(frames):,} frames, {raw:,} bytes.\n")
+
+    def row(name: str, total: int, *more: str) -> list[str]:
+        share = total / usual - 1
+        return [name, f"{total:,}", f"{raw / total:.3f}", f"{100 * share:+.2f} %", *more]
+
+    usual = sum(size(source, Exact(level=STRONGEST)) for source in sources)
+    header = ["bytes", "ratio", "more"]
+    rows = [row(part, size_with(sources, change)) for part, change in PARTS.items()]
+    print(markdown([f"level {STRONGEST}", *header], rows))
+    rows = []
+    for exact in map(Exact, range(1, STRONGEST + 1)):
+        total = sum(size(source, exact) for source in sources)
+        rows.append(row(str(exact.level), total, *times(sources, exact)))
+    print(markdown(["level", *header, *TIMES], rows))
+    rows = []
+    for chunk in CHUNKS:
+        sizes = [size(source, Exact(level=STRONGEST, chunk=chunk)) for source in sources]
+        own = str(sum(count > chunk for count in frames)), f"{sizes[int(np.argmax(frames))]:,}"
+        rows.append(row("whole clips" if chunk == WHOLE else str(chunk), sum(sizes), *own))
+    header += ["clips cut", f"clip of {max(frames):,} frames"]
+    print(markdown(["frames a chunk", *header], rows), end="")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
