@@ -135,6 +135,16 @@ def test_an_amc_without_its_asf_still_compresses(samples: Path, tmp_path: Path) 
     assert len(with_asf) < len(mp.compress(alone, "app"))
 
 
+def test_a_skeleton_of_another_is_left_away(samples: Path) -> None:
+    other = b":root\norder TX TY TZ RX RY RZ\n:bonedata\n:hierarchy\n"
+    data = (samples / "cmu_01_01.amc").read_bytes()
+    made = compress_bytes(data, name="x.amc", asf_data=other)
+    assert made.warning
+    assert "without a skeleton" in made.warning
+    assert mp.decompress(made.blob) == data
+    assert len(made.blob) < len(data) / 8
+
+
 def test_the_skeleton_is_found_beside(tmp_path: Path) -> None:
     amc = tmp_path / "02_05.amc"
     amc.write_bytes(b":DEGREES\n1\nroot 1 2 3 4 5 6\n")

@@ -1,6 +1,7 @@
 """The Python interface: ``import mocapress as mp``."""
 
 import hashlib
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -107,6 +108,11 @@ def compress_bytes(
             )
         except FormatError as error:
             warning = f"{error}; stored by a general-purpose compressor"
+            if skeleton is not None and not embed_asf:
+                # The ASF that lay beside may be another's.
+                with suppress(FormatError):
+                    blob, _ = _compress_motion(data, kind, made, None, b"", name, model)
+                    warning = f"{error}; compressed without a skeleton"
     elif kind is None:
         warning = "not a motion file; stored by a general-purpose compressor"
     if blob is None or len(data) < _SMALL or len(blob) > _POOR * len(data):
