@@ -27,11 +27,7 @@ bool holds(const NumberLine& line, const ColumnView& column) {
   std::size_t strays = 0;
   for (std::size_t row = 0; row < column.rows; ++row) {
     const double value = column[row];
-    const double back = line.number(line.place(value));
-    if (std::bit_cast<std::uint64_t>(back) != std::bit_cast<std::uint64_t>(value) &&
-        ++strays > most) {
-      return false;
-    }
+    if (!line.holds(value, line.place(value)) && ++strays > most) return false;
   }
   return true;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 
 #include "exact_start_tables.hpp"
 
@@ -163,8 +162,7 @@ double Residual::code(Side& side, std::size_t channel, const NumberLine& line, d
   bool on_line = true;
   if constexpr (!Side::kReading) {
     place = line.place(number);
-    on_line =
-        std::bit_cast<std::uint64_t>(line.number(place)) == std::bit_cast<std::uint64_t>(number);
+    on_line = line.holds(number, place);
   }
   const double scale_in_steps = scale / line.step(prediction);
   if (!(scale_in_steps >= kFine)) {
@@ -221,8 +219,7 @@ double Residual::code_first(Side& side, const NumberLine& line, double number) {
   bool on_line = true;
   if constexpr (!Side::kReading) {
     place = line.place(number);
-    on_line =
-        std::bit_cast<std::uint64_t>(line.number(place)) == std::bit_cast<std::uint64_t>(number);
+    on_line = line.holds(number, place);
   }
   const bool negative = side.bit(remainders_.first_negative, place < 0);
   const std::int64_t size = negative ? -1 - place : place;

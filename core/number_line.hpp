@@ -2,6 +2,7 @@
 // may code places around a prediction instead of the bits of a float.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 namespace mocapress {
@@ -26,6 +27,11 @@ class NumberLine {
 
   // The place of a number. Only where number(place(x)) has the bits of x is x on the line.
   std::int64_t place(double number) const;
+  // Whether it is, `place` being its place.
+  bool holds(double number, std::int64_t place) const {
+    return std::bit_cast<std::uint64_t>(this->number(place)) ==
+           std::bit_cast<std::uint64_t>(number);
+  }
   double number(std::int64_t place) const;
 
   // A place next to any number but NaN, on the line or not. Never smaller for a larger number, and
