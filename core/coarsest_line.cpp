@@ -1,6 +1,5 @@
 #include "coarsest_line.hpp"
 
-#include <bit>
 #include <cmath>
 #include <optional>
 
