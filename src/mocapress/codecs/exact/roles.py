@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
-from mocapress.binary import Reader, Writer
 from mocapress.codecs.exact.skeletons import PLACES
 from mocapress.codecs.runs import read_runs, write_runs
+from mocapress.records import Reader, Writer
 
 _NOISE = 1e-10
 _USUAL_MOVE = -3
