@@ -39,7 +39,7 @@ build/fuzz/%: core/fuzz/fuzz_%.cpp core/fuzz/driver.cpp $(kernels) $(wildcard co
 	$(CXX) $(SANITIZE) $< core/fuzz/driver.cpp $(kernels) -o $@
 
 test-js: browser
-	@if command -v node >/dev/null; then node --test viewer/diffma/test/*.test.js viewer/test/*.test.js; \
+	@if command -v node >/dev/null; then node --test tests/viewer/*.test.mjs; \
 	    else test -z "$$CI"; fi
 
 # What the page's tests run in. Where it is not there and cannot be installed, they are skipped and

@@ -1,4 +1,4 @@
-"""Make viewer/diffma/test/vectors.json: documents, and the values that every decoder gives."""
+"""Make diffma_vectors.json: documents, and the values that every decoder gives."""
 
 import json
 from pathlib import Path
@@ -12,7 +12,7 @@ from mocapress.codecs.diffma.document import read_document
 from mocapress.container.diffma_json import clip_to_json
 from mocapress.motion import Clip, Column, Joint, Skeleton
 
-FILE = Path(__file__).parents[1] / "viewer/diffma/test/vectors.json"
+FILE = Path(__file__).with_suffix(".json")
 _COMPACT: dict[str, Any] = {"separators": (",", ":"), "allow_nan": False}
 CODECS = {
     "as published": "diffma",

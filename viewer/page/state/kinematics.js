@@ -1,4 +1,4 @@
-import { FileError } from "./file_error.js";
+import { FileError } from "../reading/file_error.js";
 
 /**
  * Forward kinematics of one clip, by the conventions of docs/decisions/002-kinematics.md: a joint
@@ -7,7 +7,7 @@ import { FileError } from "./file_error.js";
  */
 export class Kinematics {
   /**
-   * @param {import("./clip.js").Clip} clip with a skeleton
+   * @param {import("../reading/clip.js").Clip} clip with a skeleton
    * @throws {FileError} when bones stretch (ASF `l`)
    */
   constructor(clip) {

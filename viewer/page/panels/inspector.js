@@ -7,7 +7,7 @@ const KIND_COLOURS = { x: "--x", y: "--y", z: "--z" };
 export class Inspector extends EventTarget {
   /**
    * @param {HTMLElement} panel
-   * @param {import("./player.js").Player} player
+   * @param {import("../state/player.js").Player} player
    */
   constructor(panel, player) {
     super();
@@ -25,8 +25,8 @@ export class Inspector extends EventTarget {
   }
 
   /**
-   * @param {import("./take.js").Take[]} takes the first one's joints are listed; channels of the
-   *   others are drawn where they have the same names
+   * @param {import("../state/take.js").Take[]} takes the first one's joints are listed; channels of
+   * the others are drawn where they have the same names
    * @param {string[]} colours
    */
   show(takes, colours) {

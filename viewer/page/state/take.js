@@ -1,6 +1,6 @@
 import { findBearings, turnUp } from "./bearings.js";
-import { secondsPerFrame } from "./clip.js";
-import { FileError } from "./file_error.js";
+import { secondsPerFrame } from "../reading/clip.js";
+import { FileError } from "../reading/file_error.js";
 import { Kinematics } from "./kinematics.js";
 
 // Places of points that fit a browser's memory: three hours of a person at 120 frames a second.
@@ -10,7 +10,7 @@ const SMOOTHING = 0.6; // seconds over which the way that a camera follows is av
 /** A clip made ready to be played: placed in space, upright, scaled, on the floor. */
 export class Take {
   /**
-   * @param {import("./clip.js").Clip} clip
+   * @param {import("../reading/clip.js").Clip} clip
    * @throws {FileError} when its skeleton cannot be placed
    */
   constructor(clip) {

@@ -2,8 +2,8 @@
 import { readFileSync } from "node:fs";
 import { basename } from "node:path";
 
-import { Kinematics } from "../page/kinematics.js";
-import { readFiles } from "../page/reading.js";
+import { Kinematics } from "../../viewer/page/state/kinematics.js";
+import { readFiles } from "../../viewer/page/reading/files.js";
 
 const paths = process.argv.slice(2);
 const { clips, errors } = readFiles(

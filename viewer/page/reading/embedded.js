@@ -1,5 +1,5 @@
 import { FileError } from "./file_error.js";
-import { fromDiffma, message } from "./reading.js";
+import { fromDiffma, message } from "./files.js";
 
 /**
  * The clips that the page itself carries.

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { Scanner } from "../page/scanner.js";
+import { Scanner } from "../../viewer/page/reading/scanner.js";
 
 const scanner = (text) => new Scanner(new TextEncoder().encode(text));
 

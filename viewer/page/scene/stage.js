@@ -7,7 +7,7 @@ import { Trail } from "./trail.js";
 /** One scene: a floor, light, and the figures that stand on it. */
 export class Stage {
   /**
-   * @param {import("./take.js").Take[]} takes in one space; the first one's bearings count
+   * @param {import("../state/take.js").Take[]} takes in one space; the first one's bearings count
    * @param {string[]} colours
    */
   constructor(takes, colours) {

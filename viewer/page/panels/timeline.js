@@ -5,7 +5,7 @@ import { element, fittedContext, themeColour } from "./element.js";
 export class Timeline {
   /**
    * @param {HTMLElement} slider holds the canvas
-   * @param {import("./player.js").Player} player
+   * @param {import("../state/player.js").Player} player
    */
   constructor(slider, player) {
     this.slider = slider;

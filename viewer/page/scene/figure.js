@@ -19,7 +19,7 @@ const [SMALL_HEAD, LARGE_HEAD] = [0.06, 0.1];
 /** A skeleton on a stage: tapered bones from joint to joint, balls at the joints, a head. */
 export class Figure {
   /**
-   * @param {import("./take.js").Take} take
+   * @param {import("../state/take.js").Take} take
    * @param {string} colour
    */
   constructor(take, colour) {

@@ -1,4 +1,4 @@
-import { decode, DiffmaError } from "../diffma/diffma.js";
+import { decode, DiffmaError } from "../../diffma/diffma.js";
 import { parseAmc } from "./amc.js";
 import { parseAsf } from "./asf.js";
 import { parseBvh } from "./bvh.js";

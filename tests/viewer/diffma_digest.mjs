@@ -1,10 +1,10 @@
 // Prints the SHA-256 of all channels' doubles, little-endian, of each document named.
-//   node digest.js FILE...
+//   node diffma_digest.mjs FILE...
 
 import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
 
-import { decode } from "../diffma.js";
+import { decode } from "../../viewer/diffma/diffma.js";
 
 for (const file of process.argv.slice(2)) {
   const hash = createHash("sha256");

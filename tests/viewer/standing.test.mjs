@@ -2,10 +2,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { findBearings, turnUp } from "../page/bearings.js";
-import { compare } from "../page/comparison.js";
-import { Player } from "../page/player.js";
-import { Take } from "../page/take.js";
+import { findBearings, turnUp } from "../../viewer/page/state/bearings.js";
+import { compare } from "../../viewer/page/state/comparison.js";
+import { Player } from "../../viewer/page/state/player.js";
+import { Take } from "../../viewer/page/state/take.js";
 
 const UPS = [
   [0, 1],

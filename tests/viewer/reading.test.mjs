@@ -2,9 +2,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { parseAmc } from "../page/amc.js";
-import { parseAsf } from "../page/asf.js";
-import { readFiles } from "../page/reading.js";
+import { parseAmc } from "../../viewer/page/reading/amc.js";
+import { parseAsf } from "../../viewer/page/reading/asf.js";
+import { readFiles } from "../../viewer/page/reading/files.js";
 
 const bytes = (text) => new TextEncoder().encode(text);
 const amc = (text, skeleton = null) => parseAmc(bytes(text), skeleton);

@@ -6,7 +6,7 @@ const HALF_WIDTH = 0.009;
 /** The way of the root over the floor: what has been, and, fainter, what is to come. */
 export class Trail {
   /**
-   * @param {import("./take.js").Take} take
+   * @param {import("../state/take.js").Take} take
    * @param {import("three").Color} colour
    * @param {number} height above the floor, so that trails do not fight each other
    */

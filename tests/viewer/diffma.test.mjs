@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
-import { decode, DiffmaError } from "../diffma.js";
+import { decode, DiffmaError } from "../../viewer/diffma/diffma.js";
 
 const listing2 = () => ({
   channels: ["x0", "x1", "x2"],
@@ -21,7 +21,7 @@ const listing2 = () => ({
   },
 });
 
-const vectors = JSON.parse(readFileSync(new URL("vectors.json", import.meta.url), "utf8"));
+const vectors = JSON.parse(readFileSync(new URL("diffma_vectors.json", import.meta.url), "utf8"));
 
 // Listing 2 with one thing wrong, and the path at which that is found.
 function broken(change) {

@@ -1,4 +1,4 @@
-import { axisName } from "./bearings.js";
+import { axisName } from "../state/bearings.js";
 import { element } from "./element.js";
 
 const MOST_NAMES = 4; // at the top; the cells of a grid have names, too
