@@ -4,7 +4,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from mocapress.bench.tables import Row, grouped, marked, stored, sum_of
+from mocapress_bench.tables import Row, grouped, marked, stored, sum_of
 
 _COLORS = {"codec": "tab:blue", "values": "tab:orange", "tool": "tab:gray"}
 _MARKERS = {"codec": "o", "values": "D", "tool": "s"}

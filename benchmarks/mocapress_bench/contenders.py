@@ -15,12 +15,12 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from mocapress import codecs
-from mocapress.bench import rivals
-from mocapress.bench.baselines import Parallelogram, PreviousFrame
-from mocapress.bench.dct import Dct
-from mocapress.bench.rivals import Rival
 from mocapress.codecs import Codec
 from mocapress.errors import ParameterError
+from mocapress_bench import rivals
+from mocapress_bench.baselines import Parallelogram, PreviousFrame
+from mocapress_bench.dct import Dct
+from mocapress_bench.rivals import Rival
 
 T = TypeVar("T")
 _LEVELS = (1, 6, 9)

@@ -31,7 +31,7 @@ TARGET_PSNR = 40.0
 # Errors in the units of the file, degrees or lengths.
 LARGEST_ERRORS = (0.1, 0.01)
 ZFP_TOLERANCE = 0.125
-DECODER = Path(__file__).parents[3] / "viewer/diffma/diffma.js"
+DECODER = Path(__file__).parents[2] / "viewer/diffma/diffma.js"
 
 _SPEED_IN_JAVASCRIPT = """
 import { readFileSync } from "node:fs";

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from mocapress.bench.diffma import BOUNDS, TARGET_PSNR
-from mocapress.bench.tables import grouped, markdown
+from mocapress_bench.diffma import BOUNDS, TARGET_PSNR
+from mocapress_bench.tables import grouped, markdown
 
 Row = dict[str, Any]
 

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 
-from mocapress.bench.contenders import Tool, contenders
-from mocapress.bench.rivals import Rival
 from mocapress.codecs import Codec, Model
 from mocapress.codecs.contract import Trainable
 from mocapress.errors import FormatError, ParameterError
 from mocapress.formats.files import read
 from mocapress.models import load_model, train
 from mocapress.motion import Clip
+from mocapress_bench.contenders import Tool, contenders
+from mocapress_bench.rivals import Rival
 
 _STRONGEST = 9
 

@@ -10,9 +10,6 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from mocapress.bench.contenders import Tool, contenders
-from mocapress.bench.learning import Learned
-from mocapress.bench.rivals import Rival
 from mocapress.codecs import Codec, Model, spec
 from mocapress.container import Kind, pack, pack_file, parse, unpack
 from mocapress.errors import FormatError
@@ -21,14 +18,12 @@ from mocapress.formats.files import find_asf, sniff, split
 from mocapress.formats.layout import Layout
 from mocapress.models import model_bytes
 from mocapress.restore import chunks_of
+from mocapress_bench.contenders import Tool, contenders
+from mocapress_bench.learning import Learned
+from mocapress_bench.rivals import Rival
 
 Row = dict[str, Any]
 T = TypeVar("T")
-
-
-def clips_in(folder: Path) -> list[Path]:
-    """Find the motion files below a folder."""
-    return sorted(p for p in folder.rglob("*") if p.suffix.lower() in (".amc", ".bvh"))
 
 
 def measure(
@@ -84,7 +79,7 @@ def measure(
 def peak_memory(path: Path, contender: str) -> dict[str, float]:
     """Measure in a process of its own what compressing and restoring a file adds, MB."""
     done = subprocess.run(  # noqa: S603
-        [sys.executable, "-m", "mocapress.bench.peak", str(path), contender],
+        [sys.executable, "-m", "mocapress_bench.peak", str(path), contender],
         capture_output=True,
         text=True,
         check=True,

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.bench.tables import markdown
 from mocapress.codecs.app import ALPHA_TABLES, App, average_prediction_error, ideal_alphas
 from mocapress.motion import Clip
+from mocapress_bench.tables import markdown
 
 CLUSTERS = (1, 3, 5, 10, 15, 18, 20, 30)
 _EDGES = (0.5, 1.0, 2.0, 5.0)

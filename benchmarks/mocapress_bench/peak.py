@@ -5,9 +5,9 @@ import resource
 import sys
 from pathlib import Path
 
-from mocapress.bench.contenders import Tool, contenders
-from mocapress.bench.rivals import Rival
 from mocapress.formats.files import sniff, split
+from mocapress_bench.contenders import Tool, contenders
+from mocapress_bench.rivals import Rival
 
 
 def _peak() -> float:
