@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.binary import Writer
-from mocapress.codecs.exact.roles import Coupling, CouplingKind
+from mocapress.codecs.exact.coupling import Coupling, CouplingKind
 from mocapress.model import Column
 
 Floats = NDArray[np.float64]
