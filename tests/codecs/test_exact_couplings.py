@@ -13,7 +13,7 @@ from mocapress.codecs.exact import Exact
 from mocapress.codecs.exact.coupling import Coupling, CouplingKind, arrange, read_coupling
 from mocapress.codecs.exact.coupling_search import find_couplings
 from mocapress.errors import CorruptError
-from mocapress.model import Clip, Column
+from mocapress.motion import Clip, Column
 
 Array = NDArray[np.float64]
 
@@ -78,7 +78,7 @@ def clips(draw: st.DrawFn) -> Clip:
     values = np.ascontiguousarray(np.hstack(blocks)[:, order])
     if draw(st.integers(0, 4)) == 0:
         columns = [Column(c.name, c.joint, "", c.unit) for c in columns]
-    return Clip(values, tuple(columns[i] for i in order))
+    return Clip.of(values, tuple(columns[i] for i in order))
 
 
 @settings(max_examples=100)
@@ -154,7 +154,7 @@ def test_couplings_stay_within_a_part_of_the_columns() -> None:
 
 
 def test_forged_couplings_are_refused() -> None:
-    from mocapress.binary import Reader
+    from mocapress.records import Reader
 
     for data in (
         b"\x08\x01\x00\x01\x01",  # no such kind

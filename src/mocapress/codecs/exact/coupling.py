@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
-from mocapress.binary import Reader, Writer
+from mocapress.records import Reader, Writer
 
 _JOINT_PARAMETERS = 7
 _JOINT_SHAPES = 243

@@ -16,7 +16,7 @@ from mocapress import _core
 from mocapress.codecs.exact.coupling import Coupling, CouplingKind
 from mocapress.codecs.exact.joints import find_joints
 from mocapress.codecs.exact.skeletons import axes, is_known
-from mocapress.model import Column
+from mocapress.motion import Column
 
 _MOST_SOURCES = 6
 _STRETCH = 22

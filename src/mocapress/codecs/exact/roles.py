@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
-from mocapress.binary import Reader, Writer
 from mocapress.codecs.exact.coupling import (
     Coupling,
     arrange,
@@ -17,6 +16,7 @@ from mocapress.codecs.exact.coupling import (
 )
 from mocapress.codecs.exact.skeletons import PLACES
 from mocapress.codecs.runs import read_runs, write_runs
+from mocapress.records import Reader, Writer
 
 _NOISE = 1e-10
 _USUAL_MOVE = -3

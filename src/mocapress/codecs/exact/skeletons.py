@@ -7,7 +7,7 @@ core/exact_kinematics_tables.hpp has the skeleton, that of the CMU motion captur
 from collections.abc import Sequence
 from itertools import groupby
 
-from mocapress.model import Column
+from mocapress.motion import Column
 
 _ARM = ("ry rz", "rx ry rz", "rx", "ry", "rx rz", "rx", "rx rz")
 _LEG = ("rx ry rz", "rx", "rx rz", "rx")

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 
 from mocapress import codecs
-from mocapress.binary import Reader, Writer
 from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.diffma.codec import by_channel
 from mocapress.codecs.diffma.document import Document, Level, read_document
@@ -22,7 +21,9 @@ from mocapress.errors import (
 from mocapress.formats import asf
 from mocapress.formats.files import columns_of, find_asf, sniff, split
 from mocapress.formats.layout import Layout
-from mocapress.model import Clip, Column, Skeleton
+from mocapress.motion import Clip, Column, Skeleton
+from mocapress.motion.clip import decimal_seconds
+from mocapress.records import Reader, Writer
 
 SUFFIXES = (".diffma.json", ".diffma.json.xz")
 _XZ = b"\xfd7zXZ\x00"
@@ -153,7 +154,7 @@ def clip_to_json(clip: Clip, codec: DiffMA, *, layout: bytes = b"") -> bytes:
         tuple(levels),
         clip.skeleton,
         tuple((column.joint, column.kind) for column in clip.columns),
-        clip.frame_time,
+        None if clip.frame_time is None else decimal_seconds(clip.frame_time),
         layout,
     )
     text = document.to_json()
@@ -206,7 +207,9 @@ def json_to_clip(data: bytes | memoryview, *, bound: float | None = None) -> Cli
         if clip.channels != len(document.names):
             raise _misfit("channels", len(document.names), clip.channels)
         return clip.with_values(document.decode(bound))
-    return Clip(document.decode(bound), _columns(document), document.frame_time, document.skeleton)
+    return Clip.of(
+        document.decode(bound), _columns(document), document.frame_time, document.skeleton
+    )
 
 
 def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:

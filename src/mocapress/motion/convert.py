@@ -6,11 +6,11 @@ from decimal import Decimal
 import numpy as np
 
 from mocapress.errors import UnsupportedError
-from mocapress.model import Clip, Column, Joint, NumberFormat, Skeleton
-from mocapress.model.columns import skeleton_columns
-from mocapress.model.kinematics import Array, local_rotations, translations
-from mocapress.model.number_format import NumberKind
-from mocapress.model.skeleton import Vec3
+from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton
+from mocapress.motion.columns import skeleton_columns
+from mocapress.motion.kinematics import Array, local_rotations, translations
+from mocapress.motion.number_format import NumberKind
+from mocapress.motion.skeleton import Vec3
 
 DEFAULT_FPS = 120.0
 """Of an AMC, which does not say; that of the CMU database."""
@@ -39,7 +39,7 @@ def to_bvh_clip(clip: Clip, fps: float | None = None) -> Clip:
     skeleton = _skeleton(clip)
     if clip.frame_time is None or fps is not None:
         seconds = (1 / Decimal(str(fps or DEFAULT_FPS))).quantize(Decimal("1e-8"))
-        clip = replace(clip, frame_time=seconds)
+        clip = clip.with_frame_time(seconds)
     if skeleton.rotation == "moving":
         return clip
     placed = translations(clip)
@@ -196,7 +196,7 @@ def _finish(clip: Clip, skeleton: Skeleton, values: list[Array], number: NumberF
         replace(column, decimal=number) for column in skeleton_columns(skeleton)
     )
     matrix = np.concatenate(values, axis=1) if values else np.empty((clip.frames, 0))
-    return replace(clip, values=matrix, columns=columns, skeleton=skeleton)
+    return Clip.of(matrix, columns, clip.frame_time, skeleton, clip.name)
 
 
 def _zyx_degrees(turn: Array) -> Array:

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from mocapress.errors import FormatError
-from mocapress.model.clip import Column
-from mocapress.model.skeleton import Skeleton
+from mocapress.motion.clip import Column
+from mocapress.motion.skeleton import Skeleton
 
 _ROOT_CHANNELS = ("tx", "ty", "tz", "rx", "ry", "rz")
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from mocapress.model import Clip, Joint, Skeleton
+from mocapress.motion import Clip, Joint, Skeleton
 
 Array = NDArray[np.float64]
 

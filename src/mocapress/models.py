@@ -10,9 +10,9 @@ from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.container import Mcm, pack_model, parse_model, peek_model
 from mocapress.container.mcm import LONGEST_FILE, LONGEST_HEADER
 from mocapress.errors import CorruptError, MissingModelError, MocapressError, ParameterError
-from mocapress.files import write_whole
 from mocapress.formats.files import read
-from mocapress.model import Clip
+from mocapress.motion import Clip
+from mocapress.storage import write_whole
 
 __all__ = ["Place", "find_model", "load_model", "model_bytes", "save_model", "train"]
 

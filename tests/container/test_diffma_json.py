@@ -18,13 +18,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import mocapress as mp
-from mocapress import codecs, diffma_json
+from mocapress import codecs
 from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.diffma.document import read_document
+from mocapress.container import diffma_json
 from mocapress.errors import FormatError, MocapressError, UnsupportedError
 from mocapress.formats.files import find_asf, sniff
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 GOLDEN = ROOT / "tests/golden"
 DECODER = ROOT / "viewer/diffma"
 SCHEMA = json.loads((ROOT / "src/mocapress/codecs/diffma/schema.json").read_text())
@@ -76,7 +77,7 @@ def test_a_clip_of_listing_1_is_listing_2() -> None:
         [[1, 0, 0], [1, 1, 0.0952], [1, 2, 0.1904], [1, 3, 0.285599], [1, 4, 0.380799]]
     )
     columns = tuple(mp.Column(f"x{i}", 0, "") for i in range(3))
-    made = mp.to_json(mp.Clip(values, columns), "diffma:bound=2,round_offset=0")
+    made = mp.to_json(mp.Clip.of(values, columns), "diffma:bound=2,round_offset=0")
     assert json.loads(made) == listing_2()
 
 
@@ -132,7 +133,9 @@ def test_without_layout_there_is_a_clip_but_no_file(samples: Path, tmp_path: Pat
 
 def test_what_is_no_number_cannot_stand_in_json(samples: Path) -> None:
     clip = mp.read(samples / "freebvh.bvh")
-    clip.values[7, 3] = np.nan
+    values = clip.values.copy()
+    values[7, 3] = np.nan
+    clip = clip.with_values(values)
     with pytest.raises(UnsupportedError, match="in frame 8 cannot stand in JSON") as caught:
         mp.to_json(clip)
     assert caught.value.found == "nan"

@@ -9,16 +9,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import mocapress as mp
-from mocapress.model import Clip, Joint, Skeleton
-from mocapress.model.columns import skeleton_columns
-from mocapress.model.kinematics import positions, rotations
+from mocapress.motion import Clip, Joint, Skeleton
+from mocapress.motion.columns import skeleton_columns
+from mocapress.motion.kinematics import positions, rotations
 
 angles = st.floats(-360, 360)
 orders = st.permutations("xyz").map("".join)
 
 
 def pose(skeleton: Skeleton, *rows: list[float]) -> Clip:
-    return Clip(np.array(rows, dtype=np.float64), skeleton_columns(skeleton), None, skeleton)
+    return Clip.of(np.array(rows, dtype=np.float64), skeleton_columns(skeleton), None, skeleton)
 
 
 def test_a_bent_arm_in_closed_form() -> None:
@@ -91,7 +91,7 @@ def test_radians_are_obeyed(samples: Path) -> None:
         type(c)(c.name, c.joint, c.kind, "rad" if c.kind[0] == "r" else c.unit)
         for c in degrees.columns
     )
-    radians = Clip(values, columns, None, degrees.skeleton)
+    radians = Clip.of(values, columns, None, degrees.skeleton)
     np.testing.assert_allclose(positions(radians)[:9], positions(degrees)[:9], atol=1e-9)
 
 

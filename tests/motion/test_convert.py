@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import mocapress as mp
-from mocapress.convert import suggest_unit, to_amc_clip, to_bvh_clip
-from mocapress.model import Clip, Joint, Skeleton
-from mocapress.model.columns import skeleton_columns
-from mocapress.model.kinematics import positions
+from mocapress.motion import Clip, Joint, Skeleton
+from mocapress.motion.columns import skeleton_columns
+from mocapress.motion.convert import suggest_unit, to_amc_clip, to_bvh_clip
+from mocapress.motion.kinematics import positions
 
 
 def same_places(before: Clip, after: Clip, tolerance: float) -> float:
@@ -87,7 +87,7 @@ def bvh_clips(draw: st.DrawFn) -> Clip:
     columns = skeleton_columns(skeleton)
     seed = draw(st.integers(0, 2**32))
     values = np.random.default_rng(seed).uniform(-400, 400, (4, len(columns)))
-    return Clip(values, columns, Decimal("0.01"), skeleton)
+    return Clip.of(values, columns, Decimal("0.01"), skeleton)
 
 
 @given(bvh_clips())

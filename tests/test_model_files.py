@@ -8,8 +8,8 @@ import pytest
 import mocapress as mp
 from mocapress.api import compress_bytes
 from mocapress.container import Kind, parse
-from mocapress.files import ExistsError
-from mocapress.trained import Place
+from mocapress.models import Place
+from mocapress.storage import ExistsError
 
 pytestmark = pytest.mark.usefixtures("learner")
 CODEC = "learner:level=9"

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.errors import UnsupportedError
-from mocapress.model.clip import Clip
-from mocapress.model.skeleton import Joint, Skeleton
+from mocapress.motion.clip import Clip
+from mocapress.motion.skeleton import Joint, Skeleton
 
 Array = NDArray[np.float64]
 
