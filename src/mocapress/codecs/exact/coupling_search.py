@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
+from mocapress.codecs.exact.coupling import Coupling, CouplingKind
 from mocapress.codecs.exact.joints import find_joints
-from mocapress.codecs.exact.roles import Coupling, CouplingKind
 from mocapress.codecs.exact.skeletons import axes, is_known
 from mocapress.motion import Column
 
