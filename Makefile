@@ -9,8 +9,8 @@ FUZZ_RUNS ?= 100000
 
 .PHONY: demo test check tests test-js browser sanitize fuzz bench wheel clean
 
-demo: $(VENV)/.built
-	@$(BIN)/mocapress bench demo
+demo: $(VENV)/.installed
+	@PYTHONPATH=benchmarks $(BIN)/python -m mocapress_bench demo
 
 test: check sanitize test-js tests
 
@@ -39,7 +39,7 @@ build/fuzz/%: core/fuzz/fuzz_%.cpp core/fuzz/driver.cpp $(kernels) $(wildcard co
 	$(CXX) $(SANITIZE) $< core/fuzz/driver.cpp $(kernels) -o $@
 
 test-js: browser
-	@if command -v node >/dev/null; then node --test viewer/diffma/test/*.test.js viewer/test/*.test.js; \
+	@if command -v node >/dev/null; then node --test tests/viewer/*.test.mjs; \
 	    else test -z "$$CI"; fi
 
 # What the page's tests run in. Where it is not there and cannot be installed, they are skipped and
@@ -83,12 +83,17 @@ wheel: $(VENV)/.built
 corpus:
 	@if [ -x $(CORPUS_SOURCE)/unpack ]; then $(PYTHON) $(CORPUS_SOURCE)/unpack corpus; fi
 
-$(VENV)/.built: pyproject.toml CMakeLists.txt $(wildcard core/*.cpp core/*.hpp)
+# For developers: the tools, and the package of benchmarks with the rivals that PyPI has.
+$(VENV)/.built: $(VENV)/.installed benchmarks/pyproject.toml
+	$(BIN)/pip install --quiet --disable-pip-version-check 'mocapress[dev]' --editable ./benchmarks
+	@touch $@
+
+$(VENV)/.installed: pyproject.toml CMakeLists.txt $(wildcard core/*.cpp core/*.hpp)
 	@command -v $(PYTHON) >/dev/null || { echo "mocapress needs Python 3.11 to 3.13 (Debian: apt-get install python3-venv)"; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "mocapress needs Python 3.11 or later; PYTHON=... names one"; exit 1; }
 	@command -v $(CXX) >/dev/null || { echo "mocapress needs a C++20 compiler: g++ 12 or clang 15 (Debian: apt-get install g++)"; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	CXX=$(CXX) $(BIN)/pip install --quiet --disable-pip-version-check --editable '.[bench,dev]'
+	CXX=$(CXX) $(BIN)/pip install --quiet --disable-pip-version-check --editable .
 	@touch $@
 
 clean:
