@@ -107,7 +107,7 @@ def _lines(text: bytes, begin: int = 0) -> list[list[re.Match[bytes]]]:
     lines: list[list[re.Match[bytes]]] = []
     for line in re.compile(rb"[^\n]+").finditer(text, begin):
         tokens = list(_TOKEN.finditer(text, *line.span()))
-        if tokens and not tokens[0].group().startswith(b"#"):
+        if tokens and tokens[0].group()[:1] not in b"#\0\x1a":
             lines.append(tokens)
     return lines
 
