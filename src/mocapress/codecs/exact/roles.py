@@ -38,7 +38,7 @@ class Role(IntEnum):
 
 
 class CouplingKind(IntEnum):
-    """By what the targets of a coupling follow from its sources; core/exact_law.hpp, _joint.hpp."""
+    """By what the targets of a coupling follow from its sources; core/exact/law.hpp, joint.hpp."""
 
     POLYNOMIAL = 0
     SPINE = 1
@@ -74,7 +74,7 @@ class Roles:
     originals: tuple[int, ...]
     """Per column: which column it copies; its own index where it copies none."""
     lines: tuple[tuple[int, int], ...]
-    """Per column: line of numbers and digits, of core/number_line.hpp."""
+    """Per column: line of numbers and digits, of core/numbers/line.hpp."""
     exponents: tuple[int, ...]
     """Per column: numbers times 2^exponent are about as large as angles in degrees."""
     turns: tuple[int, ...]
@@ -115,7 +115,7 @@ class Roles:
         ]
 
     def plan(self, columns: Sequence[int]) -> NDArray[np.int32]:
-        """Give the plan of columns for the compiled coder, (n, 6): see core/exact.hpp."""
+        """Give the plan of columns for the compiled coder, (n, 6): see core/exact/codec.hpp."""
         rows = [
             (
                 *self.lines[c],
@@ -130,7 +130,7 @@ class Roles:
 
 
 def _numbers(parameters: Sequence[int]) -> list[float]:
-    """Give the parameters of a joint as core/exact_joint.hpp has them."""
+    """Give the parameters of a joint as core/exact/joint.hpp has them."""
     if not parameters:
         return []
     shape, bits, *multiples = parameters
