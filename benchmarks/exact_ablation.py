@@ -24,7 +24,7 @@ from mocapress.codecs.exact import Exact, codec
 from mocapress.codecs.exact.roles import Role, Roles, _exponents, _turns
 from mocapress.container import Kind, parse
 from mocapress.formats.files import find_asf
-from mocapress.model import Clip, Column
+from mocapress.motion import Clip, Column
 
 Array = NDArray[np.float64]
 Change = Callable[[Roles, Array], Roles]

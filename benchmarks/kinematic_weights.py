@@ -22,8 +22,8 @@ from scipy.optimize import minimize
 import mocapress
 from mocapress.codecs.exact import Exact
 from mocapress.codecs.exact.skeletons import is_known
-from mocapress.model import Clip, Joint, Skeleton
-from mocapress.model.kinematics import positions, rotations
+from mocapress.motion import Clip, Joint, Skeleton
+from mocapress.motion.kinematics import positions, rotations
 
 Array = NDArray[np.float64]
 
@@ -110,7 +110,7 @@ def moved_by(bones: Sequence[Bone], clip: Clip, poses: Array) -> Array:
     count, frames = len(columns), len(poses)
     nudges = STEP * np.vstack([np.eye(count), -np.eye(count)])
     nudged = (poses[:, None] + nudges).reshape(-1, count)
-    stood = Clip(nudged, columns, skeleton=skeleton_of(bones))
+    stood = Clip.of(nudged, columns, skeleton=skeleton_of(bones))
     ends = positions(stood, end_sites=True)[:, len(bones) :].reshape(frames, 2, count, -1, 3)
     turns = rotations(stood).reshape(frames, 2, count, -1, 4)
     (w, x), (v, y) = ((turns[:, s, ..., :1], turns[:, s, ..., 1:]) for s in (0, 1))
@@ -295,7 +295,7 @@ def measure(clips: Sequence[Clip]) -> None:
     """Print bytes at level 9 with the skeleton and without, which is where angles have no unit."""
     totals = np.zeros(2)
     for clip in clips:
-        bare = replace(clip, columns=tuple(replace(c, unit="") for c in clip.columns))
+        bare = clip.with_columns(tuple(replace(c, unit="") for c in clip.columns))
         for i, own in enumerate((clip, bare)):
             totals[i] += sum(len(chunk.payload) for chunk in Exact(level=9).encode(own).chunks)
     print(f"{len(clips)} clips: {totals[1]:.0f} bytes without, {totals[0]:.0f} with the skeleton")

@@ -9,8 +9,8 @@ import numpy as np
 from mocapress import codecs
 from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.diffma.document import read_document
-from mocapress.diffma_json import clip_to_json
-from mocapress.model import Clip, Column, Joint, Skeleton
+from mocapress.container.diffma_json import clip_to_json
+from mocapress.motion import Clip, Column, Joint, Skeleton
 
 FILE = Path(__file__).parents[1] / "viewer/diffma/test/vectors.json"
 _COMPACT: dict[str, Any] = {"separators": (",", ":"), "allow_nan": False}
@@ -55,7 +55,7 @@ def clip() -> Clip:
         for index, joint in enumerate(joints)
         for kind in joint.channels
     )
-    return Clip(np.stack(channels, axis=1), columns, None, Skeleton(joints, "fixed"))
+    return Clip.of(np.stack(channels, axis=1), columns, None, Skeleton(joints, "fixed"))
 
 
 def vectors() -> str:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from mocapress.codecs import Chunk, Encoded, Model
 from mocapress.errors import CorruptError
-from mocapress.model import Clip, Column
+from mocapress.motion import Clip, Column
 
 _FRAMES = 100
 

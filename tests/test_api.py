@@ -13,7 +13,7 @@ import pytest
 
 import mocapress as mp
 from mocapress.api import compress_bytes
-from mocapress.files import ExistsError, write_whole
+from mocapress.storage import ExistsError, write_whole
 
 BROKEN = {
     "empty": b"",
@@ -194,7 +194,7 @@ def test_killed_at_any_moment_the_old_file_or_the_new_one(samples: Path, tmp_pat
     source, target = samples / "freebvh.bvh", tmp_path / "clip.mcz"
     old, new = mp.compress(b"the old file"), mp.compress(source, "app:t=14")
     code = (
-        "from mocapress import api\nfrom mocapress.files import write_whole\n"
+        "from mocapress import api\nfrom mocapress.storage import write_whole\n"
         "print('ready', flush=True)\n"
         f"target, source = {str(target)!r}, {str(source)!r}\n"
         "while True:\n"

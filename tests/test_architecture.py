@@ -12,10 +12,11 @@ PACKAGE = Path(mocapress.__file__).parent
 # From the bottom up; a box may import from boxes of lower rows only, and from itself.
 ROWS = [
     {"version", "errors", "_core"},
-    {"binary", "files"},
-    {"model"},
-    {"formats", "codecs", "container"},
-    {"convert", "diffma_json", "trained"},
+    {"records", "storage"},
+    {"motion"},
+    {"formats", "codecs"},
+    {"container"},
+    {"models"},
     {"restore"},
     {"api"},
     {"describe", "bench", "viewer"},

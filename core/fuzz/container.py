@@ -11,8 +11,8 @@ import zlib
 from pathlib import Path
 
 import mocapress as mp
-from mocapress.binary import Reader, Writer
 from mocapress.errors import MocapressError
+from mocapress.records import Reader, Writer
 
 GOLDEN = Path(__file__).parents[2] / "tests/golden"
 

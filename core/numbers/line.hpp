@@ -7,7 +7,7 @@
 
 namespace mocapress {
 
-// The kinds of mocapress.model.NumberFormat, of which SCIENTIFIC is `significant` with one digit
+// The kinds of mocapress.motion.NumberFormat, of which SCIENTIFIC is `significant` with one digit
 // more; `float64` has a place for every bit pattern, and so for everything.
 // `printed32` and `degrees32` are what is left of float32 numbers, and of float32 radians in
 // degrees, when they are printed with so many decimals.

@@ -5,7 +5,7 @@
 
 namespace mocapress {
 
-// The kinds of mocapress.model.NumberFormat, of which SCIENTIFIC is GENERAL with one digit more.
+// The kinds of mocapress.motion.NumberFormat, of which SCIENTIFIC is GENERAL with one digit more.
 enum class Grid : std::uint8_t { none, significant, decimals, shortest32 };
 
 // The double nearest to the decimal number of `digits` significant digits or decimals next to

@@ -24,12 +24,12 @@ from mocapress.version import __version__
 if TYPE_CHECKING:
     from mocapress.api import compress, read, write
     from mocapress.codecs import Model, codec
-    from mocapress.convert import to_amc_clip, to_bvh_clip
-    from mocapress.diffma_json import to_json
-    from mocapress.model import Clip, Column, Joint, NumberFormat, Skeleton
-    from mocapress.model.kinematics import positions, rotations
+    from mocapress.container.diffma_json import to_json
+    from mocapress.models import load_model, save_model, train
+    from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton, Stream
+    from mocapress.motion.convert import to_amc_clip, to_bvh_clip
+    from mocapress.motion.kinematics import positions, rotations
     from mocapress.restore import decompress, load
-    from mocapress.trained import load_model, save_model, train
 
 __all__ = [
     "Clip",
@@ -43,6 +43,7 @@ __all__ = [
     "NumberFormat",
     "ParameterError",
     "Skeleton",
+    "Stream",
     "UnsupportedError",
     "VerificationError",
     "__version__",
@@ -67,11 +68,13 @@ _LAZY = {
     **dict.fromkeys(("compress", "read", "write"), "mocapress.api"),
     **dict.fromkeys(("decompress", "load"), "mocapress.restore"),
     **dict.fromkeys(("Model", "codec"), "mocapress.codecs"),
-    **dict.fromkeys(("to_amc_clip", "to_bvh_clip"), "mocapress.convert"),
-    "to_json": "mocapress.diffma_json",
-    **dict.fromkeys(("Clip", "Column", "Joint", "NumberFormat", "Skeleton"), "mocapress.model"),
-    **dict.fromkeys(("positions", "rotations"), "mocapress.model.kinematics"),
-    **dict.fromkeys(("load_model", "save_model", "train"), "mocapress.trained"),
+    **dict.fromkeys(("to_amc_clip", "to_bvh_clip"), "mocapress.motion.convert"),
+    "to_json": "mocapress.container.diffma_json",
+    **dict.fromkeys(
+        ("Clip", "Column", "Joint", "NumberFormat", "Skeleton", "Stream"), "mocapress.motion"
+    ),
+    **dict.fromkeys(("positions", "rotations"), "mocapress.motion.kinematics"),
+    **dict.fromkeys(("load_model", "save_model", "train"), "mocapress.models"),
 }
 
 

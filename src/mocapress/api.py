@@ -5,17 +5,17 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from mocapress import codecs, convert, diffma_json
+from mocapress import codecs
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
-from mocapress.container import Kind, pack, pack_file
+from mocapress.container import Kind, diffma_json, pack, pack_file
 from mocapress.errors import FormatError, MocapressError
-from mocapress.files import write_whole
 from mocapress.formats import asf
 from mocapress.formats import files as motion_files
 from mocapress.formats.files import find_asf, format_clip, sniff, split
-from mocapress.model import Clip, Skeleton
+from mocapress.models import load_model
+from mocapress.motion import Clip, Skeleton, convert
 from mocapress.restore import decompress, load
-from mocapress.trained import load_model
+from mocapress.storage import write_whole
 
 __all__ = ["Compressed", "compress", "compress_bytes", "decompress", "load", "read", "write"]
 

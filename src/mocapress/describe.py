@@ -4,14 +4,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from mocapress import api, codecs, diffma_json
+from mocapress import api, codecs
 from mocapress.codecs import Encoded, Model
-from mocapress.container import Kind, parse
-from mocapress.convert import suggest_unit
+from mocapress.container import Kind, diffma_json, parse
 from mocapress.errors import MissingModelError
-from mocapress.model import Clip
+from mocapress.models import Place, find_model
+from mocapress.motion import Clip
+from mocapress.motion.convert import suggest_unit
 from mocapress.restore import chunks_of
-from mocapress.trained import Place, find_model
 
 
 def describe_file(path: Path, *, asf_path: Path | None = None) -> dict[str, Any]:

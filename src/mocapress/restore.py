@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress import codecs, diffma_json
+from mocapress import codecs
 from mocapress.codecs import Chunk, Codec, Model
-from mocapress.container import Kind, Mcz, parse, unpack
+from mocapress.container import Kind, Mcz, diffma_json, parse, unpack
 from mocapress.errors import CorruptError, FormatError, ParameterError
 from mocapress.formats import asf
 from mocapress.formats.files import columns_of, find_asf, sniff, split
 from mocapress.formats.layout import Layout
-from mocapress.model import Clip, Skeleton
-from mocapress.trained import Place, find_model
+from mocapress.models import Place, find_model
+from mocapress.motion import Clip, Skeleton
 
 __all__ = ["chunks_of", "decompress", "load"]
 

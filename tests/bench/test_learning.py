@@ -11,7 +11,7 @@ import mocapress as mp
 from mocapress.bench import learning, lossless, tables
 from mocapress.bench.contenders import contenders
 from mocapress.cli.app import app
-from mocapress.trained import model_bytes
+from mocapress.models import model_bytes
 
 pytestmark = pytest.mark.usefixtures("learner")
 BVH = (

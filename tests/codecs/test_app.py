@@ -13,8 +13,8 @@ from mocapress.codecs.app import ALPHA_TABLES, App, average_prediction_error, id
 from mocapress.codecs.app.header import unpack_header
 from mocapress.codecs.app.parents import parent_columns
 from mocapress.errors import CorruptError, ParameterError
-from mocapress.model import Clip, Column, Joint, NumberFormat, Skeleton
-from mocapress.model.number_format import NumberKind
+from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton
+from mocapress.motion.number_format import NumberKind
 
 Matrix = NDArray[np.float64]
 SIX_DIGITS = NumberFormat(NumberKind.GENERAL, 6)
@@ -34,7 +34,7 @@ def make_clip(values: Matrix, decimal: NumberFormat | None = None, order: int = 
         for kind in joint.channels
     ][::order]
     extra = [Column(f"extra.{i}", -1, "other", decimal=decimal) for i in range(values.shape[1])]
-    return Clip(values, tuple((columns + extra)[: values.shape[1]]), skeleton=Skeleton(JOINTS))
+    return Clip.of(values, tuple((columns + extra)[: values.shape[1]]), skeleton=Skeleton(JOINTS))
 
 
 def walk(frames: int, columns: int = 7, seed: int = 0) -> Matrix:
@@ -97,7 +97,7 @@ class TestGivesBackEveryBit:
 
     def test_without_skeleton(self) -> None:
         clip = make_clip(walk(50), SIX_DIGITS)
-        bare = Clip(clip.values, clip.columns)
+        bare = Clip.of(clip.values, clip.columns)
         round_trip(App(), bare)
         assert parent_columns(bare) == [-1] * 7
 
@@ -195,7 +195,7 @@ class TestFollowsThePaper:
         assert algorithm.steps == [steps]
 
     def test_index_size_of_equation_10(self) -> None:
-        clip = Clip(np.zeros((640, 62)), tuple(Column(f"c{i}", -1, "rx") for i in range(62)))
+        clip = Clip.of(np.zeros((640, 62)), tuple(Column(f"c{i}", -1, "rx") for i in range(62)))
         assert App(t=10, chunk=640).encode(clip).index_bytes == 1488
 
     def test_parents_are_the_nearest_ancestors_of_the_same_axis(self) -> None:

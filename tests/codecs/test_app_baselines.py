@@ -9,7 +9,7 @@ import mocapress.codecs
 from mocapress.bench.baselines import Parallelogram, PreviousFrame
 from mocapress.bench.dct import Dct, _basis
 from mocapress.codecs import Codec
-from mocapress.model import Clip, NumberFormat
+from mocapress.motion import Clip, NumberFormat
 
 BASELINES: list[Codec] = [Parallelogram(), PreviousFrame(), Dct()]
 

@@ -20,8 +20,8 @@ from mocapress import codecs
 from mocapress.codecs import Chunk, Codec
 from mocapress.errors import CorruptError, ParameterError
 from mocapress.formats.number_formats import printed
-from mocapress.model import Clip, Column, Joint, NumberFormat, Skeleton
-from mocapress.model.number_format import NumberKind
+from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton
+from mocapress.motion.number_format import NumberKind
 
 LOSSLESS = payloads.specs()
 LOSSY = [name for name in codecs.codec_ids() if not codecs.codec(name).lossless]
@@ -48,7 +48,7 @@ def clip_of(values: NDArray[np.float64], decimal: NumberFormat | None = None) ->
         Column(f"j{c // 3}.r{'xyz'[c % 3]}", c // 3, f"r{'xyz'[c % 3]}", "deg", decimal)
         for c in range(count)
     )
-    return Clip(values, columns, None, Skeleton(joints))
+    return Clip.of(values, columns, None, Skeleton(joints))
 
 
 def on_grid(values: NDArray[np.float64], decimal: NumberFormat | None) -> NDArray[np.float64]:

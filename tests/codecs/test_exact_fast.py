@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 import mocapress as mp
 from mocapress import _core, codecs
 from mocapress.errors import CorruptError
-from mocapress.model import Clip
+from mocapress.motion import Clip
 
 Values = NDArray[np.float64]
 LEVELS = (1, 2)
@@ -98,7 +98,7 @@ def test_the_second_level_is_smaller(samples: Path) -> None:
 def test_fast_levels_need_no_more_than_a_chunk(samples: Path, level: int) -> None:
     """Chunks of one frame cost what their numbers cost."""
     clip = mp.read(samples / "cmu_01_01.amc")
-    few = Clip(clip.values[:20], clip.columns)
+    few = Clip.of(clip.values[:20], clip.columns)
     codec = codecs.codec(f"exact:level={level},chunk=1")
     encoded = codec.encode(few)
     assert len(encoded.chunks) == 20

@@ -13,8 +13,8 @@ from mocapress import _core
 from mocapress.codecs.exact import Exact
 from mocapress.codecs.exact.skeletons import is_known
 from mocapress.errors import CorruptError
-from mocapress.model import Clip, Column, Joint, Skeleton
-from mocapress.model.kinematics import positions, rotations
+from mocapress.motion import Clip, Column, Joint, Skeleton
+from mocapress.motion.kinematics import positions, rotations
 
 Array = NDArray[np.float64]
 ROOT = Path(__file__).parents[2]
@@ -55,7 +55,7 @@ class Table:
             Column(f"{bone}.{kind}", bone, kind, "deg" if kind[0] == "r" else "length")
             for _, bone, kind in self.columns
         )
-        return Clip(values, columns, skeleton=Skeleton(tuple(joints), "fixed"))
+        return Clip.of(values, columns, skeleton=Skeleton(tuple(joints), "fixed"))
 
 
 def matrices(turns: Array) -> Array:
@@ -180,7 +180,7 @@ def test_clips_of_the_skeleton_come_back(walk: Clip, level: int) -> None:
 
 def test_geometry_makes_clips_of_the_skeleton_smaller(walk: Clip) -> None:
     known = walk.with_values(walk.values[:1000])
-    unknown = replace(known, columns=tuple(replace(c, unit="") for c in known.columns))
+    unknown = known.with_columns(tuple(replace(c, unit="") for c in known.columns))
     assert is_known(known.columns)
     assert not is_known(unknown.columns)
     small, large = (

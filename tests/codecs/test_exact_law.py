@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import mocapress
 from mocapress import _core
-from mocapress.codecs.exact.roles import CouplingKind
+from mocapress.codecs.exact.coupling import CouplingKind
 
 Array = NDArray[np.float64]
 

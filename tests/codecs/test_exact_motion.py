@@ -15,10 +15,11 @@ import mocapress as mp
 from mocapress import _core
 from mocapress.codecs import Encoded
 from mocapress.codecs.exact import Exact
-from mocapress.codecs.exact.couplings import find_couplings
-from mocapress.codecs.exact.roles import Coupling, CouplingKind, Role, Roles, find_roles
+from mocapress.codecs.exact.coupling import Coupling, CouplingKind
+from mocapress.codecs.exact.coupling_search import find_couplings
+from mocapress.codecs.exact.roles import Role, Roles, find_roles
 from mocapress.errors import CorruptError
-from mocapress.model import Clip, Column
+from mocapress.motion import Clip, Column
 
 Floats = NDArray[np.float64]
 
@@ -32,7 +33,7 @@ def clip_of(values: Floats, axes: str = "zyx") -> Clip:
         Column(f"j{c // 3}.r{axes[c % 3]}", c // 3, f"r{axes[c % 3]}", "deg")
         for c in range(values.shape[1])
     )
-    return Clip(np.ascontiguousarray(values), columns)
+    return Clip.of(np.ascontiguousarray(values), columns)
 
 
 def roles_of(clip: Clip) -> Roles:

@@ -18,7 +18,7 @@ from mocapress import codecs
 from mocapress.codecs import Codec, Model
 from mocapress.codecs.contract import Trainable
 from mocapress.errors import CorruptError, ParameterError
-from mocapress.model import Clip, NumberFormat
+from mocapress.motion import Clip, NumberFormat
 
 LEARNERS = [spec for spec in payloads.specs() if isinstance(codecs.codec(spec), Trainable)]
 OTHERS = [spec for spec in payloads.specs() if spec not in LEARNERS]

@@ -12,7 +12,7 @@ from mocapress.container import Mcm, pack, pack_model, parse_model, peek_model
 from mocapress.container.mcm import LARGEST_PAYLOAD, LONGEST_HEADER
 from mocapress.container.sections import section
 from mocapress.errors import CorruptError, UnsupportedError
-from mocapress.trained import model_bytes
+from mocapress.models import model_bytes
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 MODEL = mp.Model("learner", bytes(range(100)) * 2)

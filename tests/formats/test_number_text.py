@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mocapress.formats.number_formats import detect, printed
 from mocapress.formats.rows import RowShape, read_rows
-from mocapress.model.number_format import NumberFormat, NumberKind
+from mocapress.motion.number_format import NumberFormat, NumberKind
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 motion = st.floats(-1e6, 1e6) | st.floats(-1e-3, 1e-3)

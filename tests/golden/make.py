@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 import mocapress as mp
-from mocapress.trained import model_bytes
+from mocapress.models import model_bytes
 
 HERE = Path(__file__).parent
 sys.path.append(str(HERE.parent / "codecs"))

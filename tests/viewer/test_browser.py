@@ -12,7 +12,7 @@ from browsing import LAPTOP, PHONE, Visit, chromium, coloured
 from playwright.sync_api import Browser
 
 import mocapress as mp
-from mocapress import diffma_json
+from mocapress.container import diffma_json
 from mocapress.viewer import embed, page
 
 

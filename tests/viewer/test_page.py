@@ -13,8 +13,8 @@ import pytest
 from typer.testing import CliRunner
 
 import mocapress as mp
-from mocapress import diffma_json
 from mocapress.cli.app import app
+from mocapress.container import diffma_json
 from mocapress.viewer import embed, page
 
 

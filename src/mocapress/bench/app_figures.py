@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mocapress.bench.tables import markdown
 from mocapress.codecs.app import ALPHA_TABLES, App, average_prediction_error, ideal_alphas
-from mocapress.model import Clip
+from mocapress.motion import Clip
 
 CLUSTERS = (1, 3, 5, 10, 15, 18, 20, 30)
 _EDGES = (0.5, 1.0, 2.0, 5.0)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from mocapress.codecs.app import App, Coding
 from mocapress.codecs.contract import Chunk, Encoded, Model
-from mocapress.model import Clip, Column
+from mocapress.motion import Clip, Column
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,7 @@ from mocapress.codecs.app import App
 from mocapress.codecs.app.coding import make_plan
 from mocapress.codecs.contract import Chunk, Encoded, Model
 from mocapress.errors import CorruptError
-from mocapress.model import Clip, Column
+from mocapress.motion import Clip, Column
 
 _BLOCK = 16
 _DC = np.zeros(1)

@@ -20,9 +20,9 @@ from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.diffma.allocation import psnr
 from mocapress.codecs.diffma.codec import by_channel
 from mocapress.codecs.diffma.document import read_document
-from mocapress.diffma_json import clip_to_json
+from mocapress.container.diffma_json import clip_to_json
 from mocapress.errors import MocapressError
-from mocapress.model import Clip
+from mocapress.motion import Clip
 
 Row = dict[str, Any]
 
@@ -108,7 +108,7 @@ def speed(path: Path, repeat: int = 5) -> dict[str, float]:
     codec, frames = DiffMA(), channels.shape[1]
     plans = codec.plan(clip)
     records = codec.coding.encode(channels, plans)
-    text = clip_to_json(replace(clip, values=np.ascontiguousarray(channels.T)), codec)
+    text = clip_to_json(clip.with_values(channels.T), codec)
     found = {
         "encode, 1 core": _best(
             lambda: [codec.coding.encode(c[None], plans[:1]) for c in channels],

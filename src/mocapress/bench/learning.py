@@ -11,8 +11,8 @@ from mocapress.codecs import Codec, Model
 from mocapress.codecs.contract import Trainable
 from mocapress.errors import FormatError, ParameterError
 from mocapress.formats.files import read
-from mocapress.model import Clip
-from mocapress.trained import load_model, train
+from mocapress.models import load_model, train
+from mocapress.motion import Clip
 
 _STRONGEST = 9
 

@@ -19,8 +19,8 @@ from mocapress.errors import FormatError
 from mocapress.formats import asf
 from mocapress.formats.files import find_asf, sniff, split
 from mocapress.formats.layout import Layout
+from mocapress.models import model_bytes
 from mocapress.restore import chunks_of
-from mocapress.trained import model_bytes
 
 Row = dict[str, Any]
 T = TypeVar("T")

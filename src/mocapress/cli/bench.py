@@ -11,7 +11,7 @@ from mocapress import api, codecs
 from mocapress.bench import app_figures, learning, lossless, pareto, tables
 from mocapress.cli.batch import usage
 from mocapress.errors import CorruptError, MocapressError, ParameterError
-from mocapress.files import write_whole
+from mocapress.storage import write_whole
 
 _FEW = 10
 

@@ -9,7 +9,7 @@ from mocapress.bench import diffma, diffma_tables
 from mocapress.bench.lossless import clips_in
 from mocapress.cli.batch import usage
 from mocapress.cli.bench import progress_line, sample_folder
-from mocapress.files import write_whole
+from mocapress.storage import write_whole
 
 
 def bench_diffma_files(

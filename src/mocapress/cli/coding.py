@@ -7,15 +7,16 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from mocapress import api, codecs, diffma_json
+from mocapress import api, codecs
 from mocapress.cli.batch import STREAM, Job, Outcome, contents, find, run, target, usage
 from mocapress.cli.models import open_model, open_models, places_for
 from mocapress.codecs import Codec
 from mocapress.codecs.diffma import DiffMA
+from mocapress.container import diffma_json
 from mocapress.errors import ParameterError
-from mocapress.files import write_whole
 from mocapress.formats.asf import parse_asf
 from mocapress.formats.files import find_asf, sniff
+from mocapress.storage import write_whole
 
 _MOTION = (".amc", ".bvh", ".asf")
 _COMPRESSED = (".mcz", *diffma_json.SUFFIXES)

@@ -5,13 +5,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from mocapress import api, convert, diffma_json
+from mocapress import api
 from mocapress.cli.batch import STREAM, Job, Outcome, find, run, target, usage
 from mocapress.cli.models import open_models
+from mocapress.container import diffma_json
 from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.formats.files import format_clip
-from mocapress.model import Clip
-from mocapress.trained import Place
+from mocapress.models import Place
+from mocapress.motion import Clip, convert
 
 
 def convert_files(

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from mocapress import describe, diffma_json
+from mocapress import describe
 from mocapress.cli.batch import STREAM, Job, Outcome, contents, find, run
 from mocapress.cli.models import open_models, places_for
-from mocapress.container import mcm, mcz
+from mocapress.container import diffma_json, mcm, mcz
 from mocapress.formats.files import find_asf
-from mocapress.trained import load_model
+from mocapress.models import load_model
 
 
 def show_info(

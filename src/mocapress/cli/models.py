@@ -11,8 +11,8 @@ from mocapress.cli.batch import STREAM, Job, Outcome, find, run, usage
 from mocapress.codecs import DEFAULT_CODEC, Model
 from mocapress.errors import FormatError, MocapressError, ParameterError
 from mocapress.formats.files import read
-from mocapress.model import Clip
-from mocapress.trained import Place, load_model, model_bytes, save_model, train
+from mocapress.models import Place, load_model, model_bytes, save_model, train
+from mocapress.motion import Clip
 
 
 def open_model(path: Path) -> Model:

@@ -8,7 +8,7 @@ import typer
 
 from mocapress.cli.batch import usage
 from mocapress.errors import MocapressError
-from mocapress.files import write_whole
+from mocapress.storage import write_whole
 from mocapress.viewer import embed, page
 from mocapress.viewer.server import PageServer
 

@@ -8,8 +8,8 @@ from typing import Any, ClassVar, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.binary import Writer
-from mocapress.model import Clip, Column
+from mocapress.motion import Clip, Column
+from mocapress.records import Writer
 
 
 @dataclass(frozen=True, slots=True)

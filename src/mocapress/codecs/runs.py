@@ -6,7 +6,7 @@ A value and how many columns in a row have it, until all columns are told.
 from collections.abc import Sequence
 from itertools import groupby
 
-from mocapress.binary import Reader, Writer
+from mocapress.records import Reader, Writer
 
 
 def write_runs(writer: Writer, values: Sequence[int]) -> None:

@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from mocapress.binary import Reader, Writer
 from mocapress.container.packing import pack, unpack
 from mocapress.container.sections import read_magic, read_section, section
 from mocapress.errors import UnsupportedError
+from mocapress.records import Reader, Writer
 
 MAGIC = b"\x89MCM"
 VERSION = 1

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
 
-from mocapress.binary import Reader, Writer
 from mocapress.container.sections import read_magic, read_section, section
 from mocapress.errors import CorruptError
+from mocapress.records import Reader, Writer
 
 MAGIC = b"\x89MCZ"
 VERSION = 1

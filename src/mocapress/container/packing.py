@@ -5,8 +5,8 @@ import zlib
 from functools import cache
 from importlib import resources
 
-from mocapress.binary import Reader, Writer
 from mocapress.errors import CorruptError
+from mocapress.records import Reader, Writer
 
 _STORED, _LZMA, _DEFLATE = range(3)
 

@@ -2,8 +2,8 @@
 
 import zlib
 
-from mocapress.binary import Reader, Writer
 from mocapress.errors import CorruptError, UnsupportedError
+from mocapress.records import Reader, Writer
 
 
 def read_magic(reader: Reader, magic: bytes, version: int, name: str) -> None:

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from mocapress.errors import FormatError
 from mocapress.formats.layout import Slot
 from mocapress.formats.rows import Body, RowShape, joined, read_rows, row_error
-from mocapress.model import Clip, Skeleton
-from mocapress.model.columns import bone_columns
+from mocapress.motion import Clip, Skeleton
+from mocapress.motion.columns import bone_columns
 
 # A line that holds a frame's number and nothing else.
 _COUNTER = re.compile(rb"^[ \t]*\d+[ \t]*\r?$", re.MULTILINE)
@@ -69,7 +69,7 @@ def clip_of(
     radians = re.search(rb"^\s*:radians", header, re.MULTILINE | re.IGNORECASE)
     degrees = re.search(rb"^\s*:degrees", header, re.MULTILINE | re.IGNORECASE)
     angle_unit = "rad" if radians else "deg" if degrees else None
-    return Clip(body_values, bone_columns(skeleton, bones, angle_unit), None, skeleton, name)
+    return Clip.of(body_values, bone_columns(skeleton, bones, angle_unit), None, skeleton, name)
 
 
 def slots_of_row(text: bytes, shape: RowShape) -> list[Slot]:

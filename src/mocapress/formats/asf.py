@@ -9,7 +9,7 @@ from typing import NoReturn
 import numpy as np
 
 from mocapress.errors import FormatError
-from mocapress.model.skeleton import Joint, Skeleton, Vec3
+from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 
 _CHANNELS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")
 _LIMIT = re.compile(r"\(\s*([^\s()]+)[\s,]+([^\s()]+)\s*\)")
@@ -249,7 +249,7 @@ def _joints(bones: list[_Bone]) -> tuple[Joint, ...]:
 
 
 def format_asf(skeleton: Skeleton) -> bytes:
-    """Print a skeleton whose joints follow ASF's rules, see ``mocapress.convert``.
+    """Print a skeleton whose joints follow ASF's rules, see ``mocapress.motion.convert``.
 
     Every joint but the root has one bone, at whose end all its children lie.
     """

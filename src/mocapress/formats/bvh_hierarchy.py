@@ -7,7 +7,7 @@ from math import isfinite
 from typing import NoReturn
 
 from mocapress.errors import FormatError
-from mocapress.model.skeleton import Joint, Skeleton, Vec3
+from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 
 _KINDS = {
     "xposition": "tx",

@@ -11,9 +11,10 @@ import numpy as np
 from mocapress.errors import FormatError, UnsupportedError
 from mocapress.formats import amc, asf, bvh, bvh_hierarchy
 from mocapress.formats.layout import Layout, RowTemplate, build
-from mocapress.model import Clip, NumberFormat, Skeleton
-from mocapress.model.columns import skeleton_columns
-from mocapress.model.number_format import NumberKind
+from mocapress.motion import Clip, NumberFormat, Skeleton
+from mocapress.motion.clip import decimal_seconds
+from mocapress.motion.columns import skeleton_columns
+from mocapress.motion.number_format import NumberKind
 
 FORMATS = ("amc", "bvh", "asf")
 
@@ -70,7 +71,7 @@ def split(
         layout = build(kind, data, body, partial(amc.slots_of_row, shape=shape))
     elif kind == "bvh":
         body, hierarchy, error = bvh.read_body(data, file)
-        clip = Clip(
+        clip = Clip.of(
             body.values,
             skeleton_columns(hierarchy.skeleton),
             hierarchy.frame_time,
@@ -83,8 +84,8 @@ def split(
         replace(column, decimal=number_format)
         for column, number_format in zip(clip.columns, layout.formats, strict=True)
     )
-    name = Path(file).stem if file else ""
-    return Split(replace(clip, columns=columns, name=name), layout, error)
+    clip = replace(clip.with_columns(columns), name=Path(file).stem if file else "")
+    return Split(clip, layout, error)
 
 
 def columns_of(layout: Layout, skeleton: Skeleton | None = None) -> Clip:
@@ -103,7 +104,7 @@ def columns_of(layout: Layout, skeleton: Skeleton | None = None) -> Clip:
         replace(column, decimal=number_format)
         for column, number_format in zip(empty.columns, layout.formats, strict=True)
     )
-    return replace(empty, columns=columns, values=empty.values[:0])
+    return empty.with_columns(columns).with_values(empty.values[:0])
 
 
 def read(path: str | Path, *, asf_path: str | Path | None = None) -> Clip:
@@ -133,7 +134,7 @@ def read(path: str | Path, *, asf_path: str | Path | None = None) -> Clip:
     if kind == "asf":
         skeleton = asf.parse_asf(data, str(path))
         columns = skeleton_columns(skeleton)
-        return Clip(np.empty((0, len(columns))), columns, None, skeleton, path.stem)
+        return Clip.of(np.empty((0, len(columns))), columns, None, skeleton, path.stem)
     found = asf_path or (find_asf(path) if kind == "amc" else None)
     if found:
         skeleton = asf.parse_asf(Path(found).read_bytes(), str(found))
@@ -146,7 +147,7 @@ def read(path: str | Path, *, asf_path: str | Path | None = None) -> Clip:
 def format_clip(clip: Clip, kind: str) -> bytes:
     """Print a clip as AMC or BVH; numbers in their columns' formats, else the fewest digits.
 
-    The columns must be those of the format: see ``mocapress.convert``.
+    The columns must be those of the format: see ``mocapress.motion.convert``.
     """
     shortest = NumberFormat(NumberKind.SHORTEST)
     formats = tuple(column.decimal or shortest for column in clip.columns)
@@ -159,7 +160,9 @@ def format_clip(clip: Clip, kind: str) -> bytes:
             raise UnsupportedError("a BVH file needs a skeleton")
         if clip.frame_time is None:
             raise UnsupportedError("a BVH file needs a frame time")
-        header = bvh_hierarchy.format_hierarchy(clip.skeleton, clip.frames, clip.frame_time)
+        header = bvh_hierarchy.format_hierarchy(
+            clip.skeleton, clip.frames, decimal_seconds(clip.frame_time)
+        )
         literals = [b"", *[b" "] * (clip.channels - 1), b"\n"]
     elif kind == "amc":
         radians = any(column.unit == "rad" for column in clip.columns)

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
-from mocapress.binary import Reader, Writer
 from mocapress.errors import CorruptError
 from mocapress.formats.number_formats import detect, packed
 from mocapress.formats.rows import Body
-from mocapress.model.number_format import NumberFormat, NumberKind
+from mocapress.motion.number_format import NumberFormat, NumberKind
+from mocapress.records import Reader, Writer
 
 _MOST_TEMPLATES = 64
 _SAMPLE = 48

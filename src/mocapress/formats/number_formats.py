@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.formats.rows import merged_statistics
-from mocapress.model.number_format import NumberFormat, NumberKind
+from mocapress.motion.number_format import NumberFormat, NumberKind
 
 
 def packed(formats: tuple[NumberFormat, ...]) -> NDArray[np.uint8]:

@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from mocapress import api, diffma_json
+from mocapress import api
 from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.diffma.skeleton_json import skeleton_keys
+from mocapress.container import diffma_json
 from mocapress.errors import MocapressError, UnsupportedError
-from mocapress.model import Clip
+from mocapress.motion import Clip
 
 MAX_ERROR = 0.01
 """Of a value, in degrees or the file's unit of length: less than can be seen."""

@@ -3,7 +3,7 @@
 import html
 
 from mocapress.errors import UnsupportedError
-from mocapress.model import Clip
+from mocapress.motion import Clip
 from mocapress.viewer import embed, page
 
 

@@ -12,7 +12,7 @@ from mocapress.codecs.app.measures import average_prediction_error
 from mocapress.codecs.app.tables import ALPHA_TABLES
 from mocapress.codecs.contract import Chunk, Encoded, Model
 from mocapress.errors import ParameterError
-from mocapress.model import Clip, Column
+from mocapress.motion import Clip, Column
 
 _MOST_FRAMES = 1 << 20
 _DOUBLE_MANTISSA = 53

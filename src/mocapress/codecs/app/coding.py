@@ -11,8 +11,8 @@ from mocapress.codecs.app.header import pack_header, unpack_header
 from mocapress.codecs.app.parents import parent_columns
 from mocapress.codecs.contract import Chunk, Encoded
 from mocapress.errors import CorruptError
-from mocapress.model import Clip, Column
-from mocapress.model.number_format import NumberKind
+from mocapress.motion import Clip, Column
+from mocapress.motion.number_format import NumberKind
 
 _GRIDS = {
     NumberKind.GENERAL: (1, 0),

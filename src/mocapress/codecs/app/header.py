@@ -8,8 +8,8 @@ snapped to the column's decimal grid.
 
 from collections.abc import Sequence
 
-from mocapress.binary import Reader, Writer
 from mocapress.codecs.runs import read_runs, write_runs
+from mocapress.records import Reader, Writer
 
 PRECISIONS = 3
 

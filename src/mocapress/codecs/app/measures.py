@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mocapress import _core
 from mocapress.codecs.app.coding import Coding, make_plan
 from mocapress.codecs.app.parents import parent_columns
-from mocapress.model import Clip
+from mocapress.motion import Clip
 
 
 class Predictor(Protocol):

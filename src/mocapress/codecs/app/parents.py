@@ -1,6 +1,6 @@
 """Which column predicts which: the columns p of Eq. 6."""
 
-from mocapress.model import Clip
+from mocapress.motion import Clip
 
 
 def parent_columns(clip: Clip) -> list[int]:

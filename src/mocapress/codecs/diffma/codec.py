@@ -19,7 +19,7 @@ from mocapress.codecs.diffma.payload import (
     unpack_payload,
 )
 from mocapress.errors import CorruptError, ParameterError
-from mocapress.model import Clip, Column
+from mocapress.motion import Clip, Column
 
 _MOST_FRAMES = 1 << 20
 

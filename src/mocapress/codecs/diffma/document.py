@@ -24,7 +24,7 @@ from mocapress.codecs.diffma.coding import (
 )
 from mocapress.codecs.diffma.json_value import JsonValue, parse
 from mocapress.codecs.diffma.skeleton_json import ColumnPlace, read_skeleton, skeleton_keys
-from mocapress.model import Skeleton
+from mocapress.motion import Skeleton
 
 _LIST = {"separators": (",", ":")}
 _ALPHABET, _OPCODE = 1, 2  # core/diffma/codec.hpp, Fault

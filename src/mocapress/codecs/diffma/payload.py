@@ -11,9 +11,9 @@ from math import inf
 
 import numpy as np
 
-from mocapress.binary import Reader, Writer
 from mocapress.codecs.diffma.coding import MOST_ORDER, Plan, Record
 from mocapress.errors import CorruptError
+from mocapress.records import Reader, Writer
 
 # What a sample can cost: NEG and two characters, and a number as text with what parts it.
 _MOST_BYTES = 32

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from typing import Any, cast
 
 from mocapress.codecs.diffma.json_value import JsonValue
-from mocapress.model import Joint, Skeleton
-from mocapress.model.skeleton import Vec3
+from mocapress.motion import Joint, Skeleton
+from mocapress.motion.skeleton import Vec3
 
 _KINDS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")
 _AXIS_ORDERS = ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
-from mocapress.binary import Reader, Writer
 from mocapress.codecs.contract import Chunk, Encoded, Model
-from mocapress.codecs.exact.couplings import find_couplings
+from mocapress.codecs.exact.coupling_search import find_couplings
 from mocapress.codecs.exact.roles import Role, Roles, find_roles, read_roles, write_roles
 from mocapress.codecs.exact.skeletons import is_known
 from mocapress.codecs.exact.start import Learned, Start, model_of, start_of
 from mocapress.errors import CorruptError, ParameterError
-from mocapress.model import Clip, Column
+from mocapress.motion import Clip, Column
+from mocapress.records import Reader, Writer
 
 _MOST_FRAMES = 1 << 20
 _NO_MODEL, _MODEL = 0, 1

@@ -14,9 +14,9 @@ from itertools import groupby, product
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.binary import Writer
-from mocapress.codecs.exact.roles import Coupling, CouplingKind
-from mocapress.model import Column
+from mocapress.codecs.exact.coupling import Coupling, CouplingKind
+from mocapress.motion import Column
+from mocapress.records import Writer
 
 Floats = NDArray[np.float64]
 

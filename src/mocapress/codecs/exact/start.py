@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.binary import Reader, Writer
 from mocapress.codecs.contract import Model
+from mocapress.records import Reader, Writer
 
 Learned = tuple[list[float], list[list[float]]]
 """As the compiled coder has it: by all columns, and by each of the coded columns."""

@@ -1,0 +1,281 @@
+"""Motion files as DiffMA JSON and back (docs/guide/diffma_json.md); ``.xz`` packs the text."""
+
+import lzma
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from mocapress import codecs
+from mocapress.codecs.diffma import DiffMA
+from mocapress.codecs.diffma.codec import by_channel
+from mocapress.codecs.diffma.document import Document, Level, read_document
+from mocapress.container import Kind, pack, unpack
+from mocapress.errors import (
+    CorruptError,
+    FormatError,
+    ParameterError,
+    UnsupportedError,
+    VerificationError,
+)
+from mocapress.formats import asf
+from mocapress.formats.files import columns_of, find_asf, sniff, split
+from mocapress.formats.layout import Layout
+from mocapress.motion import Clip, Column, Skeleton
+from mocapress.motion.clip import decimal_seconds
+from mocapress.records import Reader, Writer
+
+SUFFIXES = (".diffma.json", ".diffma.json.xz")
+_XZ = b"\xfd7zXZ\x00"
+_FOR_TEXT = [
+    {
+        "id": lzma.FILTER_LZMA2,
+        "preset": 9 | lzma.PRESET_EXTREME,
+        "dict_size": 1 << 26,
+        "lc": 4,
+        "lp": 0,
+        "pb": 0,
+    }
+]
+# Texts above this size, and decoders that want more memory, are refused.
+_MOST_TEXT = 1 << 28
+_MOST_MEMORY = 1 << 27
+
+
+def is_json(data: bytes | memoryview, name: str = "") -> bool:
+    """Tell DiffMA JSON, packed or not, from the contents or the name."""
+    head = bytes(data[:64])
+    return name.lower().endswith(SUFFIXES) or head[:6] == _XZ or head.lstrip()[:1] == b"{"
+
+
+def stem(name: str) -> str:
+    """Give a file's name without the ending."""
+    ending = max((e for e in SUFFIXES if name.lower().endswith(e)), key=len, default="")
+    return name[: len(name) - len(ending)]
+
+
+def to_json(
+    source: str | Path | bytes | Clip,
+    codec: str | DiffMA = "diffma",
+    *,
+    asf_path: str | Path | None = None,
+) -> bytes:
+    """Code a clip, a motion file or its bytes as DiffMA JSON.
+
+    Parameters
+    ----------
+    source
+        A clip, a path, or the contents of an AMC or BVH.
+    codec
+        ``diffma`` with parameters, ``"diffma:bound=4"``.
+    asf_path
+        The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
+
+    Returns
+    -------
+    bytes
+        JSON text; ``decompress`` makes the AMC or BVH again, unless the source was a clip.
+
+    Raises
+    ------
+    FormatError
+        When the source is no motion file, or a broken one.
+    ParameterError
+        When the codec is another, or has no such parameter.
+
+    """
+    made = diffma_codec(codec) if isinstance(codec, str) else codec
+    if isinstance(source, Clip):
+        return clip_to_json(source, made)
+    data, name = (
+        (source, "") if isinstance(source, bytes) else (Path(source).read_bytes(), str(source))
+    )
+    if asf_path is None and name and sniff(data, name) == "amc":
+        asf_path = find_asf(Path(name))
+    skeleton = asf.parse_asf(Path(asf_path).read_bytes(), str(asf_path)) if asf_path else None
+    return file_to_json(data, made, name=name, skeleton=skeleton)
+
+
+def diffma_codec(text: str) -> DiffMA:
+    """Make the codec of a text, which must be ``diffma``."""
+    made = codecs.codec(text)
+    if not isinstance(made, DiffMA):
+        raise ParameterError("JSON is written by one codec", expected="diffma", found=repr(made.id))
+    return made
+
+
+def file_to_json(
+    data: bytes, codec: DiffMA, *, name: str = "", skeleton: Skeleton | None = None
+) -> bytes:
+    """Code a motion file; what comes back of it, by ``json_to_file``, has its layout.
+
+    Raises
+    ------
+    FormatError
+        When it is no motion file, or a broken one.
+
+    """
+    kind = sniff(data, name)
+    if kind not in ("amc", "bvh"):
+        raise FormatError("not a motion file", file=name or None, expected="AMC or BVH")
+    clip, layout, error = split(data, kind, skeleton=skeleton, file=name or None)
+    if error:
+        raise error
+    writer = Writer()
+    writer.integer(Kind[kind.upper()])
+    writer.integer(clip.frames)
+    return clip_to_json(clip, codec, layout=bytes(writer.data) + pack(layout.to_bytes()))
+
+
+def clip_to_json(clip: Clip, codec: DiffMA, *, layout: bytes = b"") -> bytes:
+    """Code a clip: JSON text, which was read and decoded again and keeps the largest errors.
+
+    Raises
+    ------
+    UnsupportedError
+        When a value is no finite number, which JSON cannot hold.
+    VerificationError
+        When what was decoded is not what was encoded.
+
+    """
+    _refuse_not_finite(clip)
+    plans, coding, channels = codec.plan(clip), codec.coding, by_channel(clip.values)
+    levels = []
+    for bound in codec.level_bounds:
+        level = codec.level(bound)
+        records = level.coding.encode(channels, level.plan(clip))
+        levels.append(Level(bound, tuple(records)))
+    document = Document(
+        tuple(column.name for column in clip.columns),
+        coding,
+        plans,
+        tuple(coding.encode(channels, plans)),
+        clip.frames,
+        tuple(levels),
+        clip.skeleton,
+        tuple((column.joint, column.kind) for column in clip.columns),
+        None if clip.frame_time is None else decimal_seconds(clip.frame_time),
+        layout,
+    )
+    text = document.to_json()
+    decoded = read_document(text).decode()
+    limits = np.array([plan.max_error for plan in plans])
+    same = (
+        by_channel(decoded).tobytes()
+        == coding.decode(document.records, plans, clip.frames).tobytes()
+    )
+    if not same or (np.abs(decoded - clip.values) > limits).any():
+        raise VerificationError("DiffMA JSON does not give back what was encoded")
+    return text
+
+
+def named(name: str, text: bytes) -> bytes:
+    """Give JSON text as a file of this name holds it: packed where it ends in ``.xz``."""
+    return lzma.compress(text, filters=_FOR_TEXT) if name.lower().endswith(".xz") else text
+
+
+def open_json(data: bytes | memoryview) -> Document:
+    """Read a document, packed or not.
+
+    Raises
+    ------
+    FormatError, CorruptError
+        When it breaks the format, or its packing is damaged.
+
+    """
+    data = bytes(data)
+    if data[:6] == _XZ:
+        decoder = lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=_MOST_MEMORY)
+        try:
+            data = decoder.decompress(data, max_length=_MOST_TEXT)
+        except lzma.LZMAError as error:
+            raise CorruptError(f"xz: cannot be unpacked ({error})") from error
+        if not decoder.eof or decoder.unused_data:
+            raise CorruptError(f"xz: cut off, or too long: more than {_MOST_TEXT} bytes unpacked")
+    return read_document(data)
+
+
+def json_to_clip(data: bytes | memoryview, *, bound: float | None = None) -> Clip:
+    """Give the clip in a document; ``bound`` asks for a coarser level of detail.
+
+    Columns, skeleton and frame time are as far known as the document says.
+    """
+    document = open_json(data)
+    layout = _layout(document)
+    if layout is not None:
+        clip = columns_of(layout, document.skeleton if layout.format == "amc" else None)
+        if clip.channels != len(document.names):
+            raise _misfit("channels", len(document.names), clip.channels)
+        return clip.with_values(document.decode(bound))
+    return Clip.of(
+        document.decode(bound), _columns(document), document.frame_time, document.skeleton
+    )
+
+
+def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:
+    """Give the motion file that a document was made of, with the decoded values in its layout.
+
+    Returns
+    -------
+    tuple
+        ``amc`` or ``bvh``, and the file's bytes.
+
+    Raises
+    ------
+    UnsupportedError
+        When the document has no layout, as those of other writers.
+
+    """
+    document = open_json(data)
+    layout = _layout(document)
+    if layout is None:
+        raise UnsupportedError(
+            "$.layout is not there to make the file again",
+            expected="a file that mocapress compress made, or convert --to bvh",
+        )
+    values = document.decode()
+    if values.shape[1] != len(layout.formats):
+        raise _misfit("channels", values.shape[1], len(layout.formats))
+    return layout.format, layout.join(values, (1 << 24) + 64 * (values.size + len(data)))
+
+
+def _layout(document: Document) -> Layout | None:
+    if not document.layout:
+        return None
+    reader = Reader(document.layout, "$.layout")
+    kind, frames = Kind(reader.integer(max(Kind))), reader.integer()
+    if kind is Kind.BYTES or frames != document.frames:
+        raise _misfit("frames of AMC or BVH", document.frames, frames)
+    most = (1 << 22) + 64 * len(document.layout)
+    packed = document.layout[reader.position :]
+    return Layout.from_bytes(unpack(packed, "$.layout", most), kind.name.lower(), frames)
+
+
+def _misfit(what: str, expected: int, found: int) -> FormatError:
+    return FormatError(f"$.layout: {what}", expected=str(expected), found=str(found))
+
+
+def _columns(document: Document) -> tuple[Column, ...]:
+    places: Sequence[tuple[int, str]] = document.places
+    unit = document.skeleton.angle_unit if document.skeleton else "deg"
+    if document.skeleton is None:
+        joints: dict[str, int] = {}
+        parted = [name.rpartition(".") for name in document.names]
+        places = [(joints.setdefault(joint, len(joints)), kind) for joint, _, kind in parted]
+    columns = []
+    for name, (joint, kind) in zip(document.names, places, strict=True):
+        known = {"r": unit, "t": "length", "l": "length"} if len(kind) <= 2 else {}
+        columns.append(Column(name, joint, kind, known.get(kind[:1], "")))
+    return tuple(columns)
+
+
+def _refuse_not_finite(clip: Clip) -> None:
+    wrong = np.argwhere(~np.isfinite(clip.values))
+    if len(wrong):
+        frame, column = wrong[0].tolist()
+        value = float(clip.values[frame, column])
+        raise UnsupportedError(
+            f"{clip.columns[column].name} in frame {frame + 1} cannot stand in JSON",
+            expected="a finite number",
+            found=str(value),
+        )
