@@ -12,8 +12,8 @@ kernels := $(filter-out core/python/% core/check/% core/fuzz/%,$(filter %.cpp,$(
 
 .PHONY: demo test check tests test-js browser sanitize fuzz bench wheel clean
 
-demo: $(VENV)/.built
-	@$(BIN)/mocapress bench demo
+demo: $(VENV)/.installed
+	@PYTHONPATH=benchmarks $(BIN)/python -m mocapress_bench demo
 
 test: check sanitize test-js tests
 
@@ -45,7 +45,7 @@ build/fuzz/%.o: %.cpp $(headers)
 	$(CXX) $(SANITIZE) -c $< -o $@
 
 test-js: browser
-	@if command -v node >/dev/null; then node --test viewer/diffma/test/*.test.js viewer/test/*.test.js; \
+	@if command -v node >/dev/null; then node --test tests/viewer/*.test.mjs; \
 	    else test -z "$$CI"; fi
 
 # What the page's tests run in. Where it is not there and cannot be installed, they are skipped and
@@ -89,12 +89,17 @@ wheel: $(VENV)/.built
 corpus:
 	@if [ -x $(CORPUS_SOURCE)/unpack ]; then $(PYTHON) $(CORPUS_SOURCE)/unpack corpus; fi
 
-$(VENV)/.built: pyproject.toml CMakeLists.txt $(kernels) $(headers) $(wildcard core/python/*.cpp)
+# For developers: the tools, and the package of benchmarks with the rivals that PyPI has.
+$(VENV)/.built: $(VENV)/.installed benchmarks/pyproject.toml
+	$(BIN)/pip install --quiet --disable-pip-version-check 'mocapress[dev]' --editable ./benchmarks
+	@touch $@
+
+$(VENV)/.installed: pyproject.toml CMakeLists.txt $(kernels) $(headers) $(wildcard core/python/*.cpp)
 	@command -v $(PYTHON) >/dev/null || { echo "mocapress needs Python 3.11 to 3.13 (Debian: apt-get install python3-venv)"; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "mocapress needs Python 3.11 or later; PYTHON=... names one"; exit 1; }
 	@command -v $(CXX) >/dev/null || { echo "mocapress needs a C++20 compiler: g++ 12 or clang 15 (Debian: apt-get install g++)"; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	CXX=$(CXX) $(BIN)/pip install --quiet --disable-pip-version-check --editable '.[bench,dev]'
+	CXX=$(CXX) $(BIN)/pip install --quiet --disable-pip-version-check --editable .
 	@touch $@
 
 clean:

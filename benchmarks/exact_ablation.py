@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 
 import mocapress
 from mocapress import api
-from mocapress.bench.tables import markdown
 from mocapress.codecs.exact import Exact, codec
 from mocapress.codecs.exact.roles import Role, Roles, _exponents, _turns
 from mocapress.container import Kind, parse
 from mocapress.formats.files import find_asf
 from mocapress.motion import Clip, Column
+from mocapress_bench.tables import markdown
 
 Array = NDArray[np.float64]
 Change = Callable[[Roles, Array], Roles]

@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+
+import mocapress
 from solver_law_fits import (
     HOLDS,
     Array,
@@ -29,8 +31,6 @@ from solver_law_fits import (
     twists,
     y_errors,
 )
-
-import mocapress
 
 CHAINS = {
     "spine": ("lowerback", "upperback", "thorax"),
