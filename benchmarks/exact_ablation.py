@@ -31,7 +31,7 @@ Change = Callable[[Roles, Array], Roles]
 FIRST, EVERY, STRONGEST = 2, 12, 9
 CHUNKS = (512, 1024, 2048, 4096, WHOLE := 1 << 20)
 TIMES = ("find roles µs/frame", "encode µs/frame", "decode µs/frame")
-FLOAT64 = (0, 0)  # of core/number_line.hpp
+FLOAT64 = (0, 0)  # of core/numbers/line.hpp
 find_roles = codec._roles
 
 

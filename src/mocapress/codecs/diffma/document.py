@@ -21,7 +21,7 @@ from mocapress.codecs.diffma.skeleton_json import ColumnPlace, read_skeleton, wr
 from mocapress.motion import Skeleton
 
 T = TypeVar("T")
-_ALPHABET, _OPCODE = 1, 2  # core/diffma.hpp, Fault
+_ALPHABET, _OPCODE = 1, 2  # core/diffma/codec.hpp, Fault
 
 
 @dataclass(frozen=True, slots=True)
