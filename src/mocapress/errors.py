@@ -87,4 +87,4 @@ class MissingModelError(MocapressError):
 
 
 class VerificationError(MocapressError):
-    """What was decoded is not what was encoded; nothing has been written."""
+    """A codec failed, or what it decodes is not what it encoded; nothing has been written."""
