@@ -4,6 +4,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -84,7 +85,7 @@ def compress_files(
             "compressed_bytes": len(blob),
             "ratio": round(len(data) / len(blob), 3),
             "largest_error": loss.most if loss else None,
-            "psnr": loss.psnr if loss else None,
+            "psnr": loss.psnr if loss and isfinite(loss.psnr) else None,
             "warning": warning,
         }
 

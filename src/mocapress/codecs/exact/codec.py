@@ -20,7 +20,7 @@ from mocapress.records import Reader, Writer
 _MOST_FRAMES = 1 << 20
 _NO_MODEL, _MODEL = 0, 1
 _FAST_LEVELS = 2
-"""Up to this level couplings are not looked for: core/exact_fast.hpp has no use for them."""
+"""Up to this level couplings are not looked for: core/exact_fast/codec.hpp has no use for them."""
 
 
 @dataclass(frozen=True, slots=True)

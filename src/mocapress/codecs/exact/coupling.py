@@ -19,7 +19,7 @@ _MOST_TOUCHING = 12
 
 
 class CouplingKind(IntEnum):
-    """By what the targets of a coupling follow from its sources; core/exact_law.hpp, _joint.hpp."""
+    """By what the targets of a coupling follow from its sources; core/exact/law.hpp, joint.hpp."""
 
     POLYNOMIAL = 0
     SPINE = 1
@@ -66,7 +66,7 @@ class Coupling:
         return self.targets
 
     def numbers(self) -> list[float]:
-        """Give the parameters of a joint as core/exact_joint.hpp has them."""
+        """Give the parameters of a joint as core/exact/joint.hpp has them."""
         if not self.parameters:
             return []
         shape, bits, *multiples = self.parameters

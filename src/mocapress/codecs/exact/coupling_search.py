@@ -67,7 +67,7 @@ def find_couplings(
 
 
 def _step(line: int, digits: int, usual: float) -> float:
-    """Give the distance of neighbouring numbers on a line of core/number_line.hpp."""
+    """Give the distance of neighbouring numbers on a line of core/numbers/line.hpp."""
     if line in _DECIMALS:
         return float(10.0**-digits)
     if line == _SIGNIFICANT:

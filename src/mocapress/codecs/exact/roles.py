@@ -48,7 +48,7 @@ class Roles:
     originals: tuple[int, ...]
     """Per column: which column it copies; its own index where it copies none."""
     lines: tuple[tuple[int, int], ...]
-    """Per column: line of numbers and digits, of core/number_line.hpp."""
+    """Per column: line of numbers and digits, of core/numbers/line.hpp."""
     exponents: tuple[int, ...]
     """Per column: numbers times 2^exponent are about as large as angles in degrees."""
     turns: tuple[int, ...]
@@ -81,7 +81,7 @@ class Roles:
         ]
 
     def plan(self, columns: Sequence[int]) -> NDArray[np.int32]:
-        """Give the plan of columns for the compiled coder, (n, 6): see core/exact.hpp."""
+        """Give the plan of columns for the compiled coder, (n, 6): see core/exact/codec.hpp."""
         rows = [
             (
                 *self.lines[c],

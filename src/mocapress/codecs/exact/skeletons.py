@@ -1,7 +1,7 @@
 """Which clips move the skeleton whose geometry the compiled coder knows.
 
 Nothing is taken from names: what counts is which channels the joints have, one after the other.
-core/exact_kinematics_tables.hpp has the skeleton, that of the CMU motion capture database.
+core/exact/kinematics_tables.hpp has the skeleton, that of the CMU motion capture database.
 """
 
 from collections.abc import Sequence
