@@ -14,7 +14,7 @@ import pytest
 import mocapress as mp
 from mocapress.formats.files import find_asf
 
-SCRIPT = Path(__file__).parents[2] / "viewer/test/positions.mjs"
+SCRIPT = Path(__file__).with_name("positions.mjs")
 SAMPLES = Path(__file__).parents[2] / "samples"
 
 
