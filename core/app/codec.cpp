@@ -200,13 +200,14 @@ void for_each_column(Columns& matrix, std::size_t frames, std::span<const Column
   }
 }
 
-// Writes the values row by row, snapped to their grids.
+// Writes the values row by row, moved to their lines.
 void restore(Columns& matrix, double* values, std::size_t frames, std::span<const Column> columns) {
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const double* column = matrix[c];
-    const Grid grid = columns[c].precision == Precision::snapped32 ? columns[c].grid : Grid::none;
+    const bool snapped = columns[c].precision == Precision::snapped32;
+    const NumberLine line(snapped ? columns[c].line : Line::float64, columns[c].digits);
     for (std::size_t j = 0; j < frames; ++j) {
-      values[j * columns.size() + c] = snap(column[j], grid, columns[c].digits);
+      values[j * columns.size() + c] = line.nearest(column[j]);
     }
   }
 }
@@ -217,9 +218,9 @@ std::vector<Precision> precisions(const double* values, std::size_t frames,
                                   std::span<const Column> columns) {
   std::vector<Precision> found;
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    const auto restored_by = [&](Grid grid) {
+    const auto restored_by = [&](const NumberLine& line) {
       for (std::size_t i = c; i < frames * columns.size(); i += columns.size()) {
-        const double kept = snap(static_cast<float>(values[i]), grid, columns[c].digits);
+        const double kept = line.nearest(static_cast<float>(values[i]));
         if (std::bit_cast<std::uint64_t>(kept) != std::bit_cast<std::uint64_t>(values[i]) ||
             std::isnan(kept)) {  // which of its bits a conversion keeps depends on the machine
           return false;
@@ -227,9 +228,9 @@ std::vector<Precision> precisions(const double* values, std::size_t frames,
       }
       return true;
     };
-    found.push_back(restored_by(Grid::none)        ? Precision::float32
-                    : restored_by(columns[c].grid) ? Precision::snapped32
-                                                   : Precision::float64);
+    found.push_back(restored_by({Line::float64, 0})                     ? Precision::float32
+                    : restored_by({columns[c].line, columns[c].digits}) ? Precision::snapped32
+                                                                        : Precision::float64);
   }
   return found;
 }

@@ -16,10 +16,6 @@ constexpr int kMostBits = 20;  // of k
 constexpr double kMostMultiple = 1e6;
 constexpr int kLongest = 40;  // the finest kind: lengths count from what it would have
 
-double power_of_two(int exponent) {
-  return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
-}
-
 // A number taken apart: of kind q - kLowest, kZero or kOther.
 struct Multiple {
   unsigned kind;

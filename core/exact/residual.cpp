@@ -127,9 +127,8 @@ class Coding {
         const double share = in_this / (in_this + in_smaller);
         smaller = side_.chance(static_cast<std::uint32_t>(64 + share * 65408), smaller);
       } else {
-        smaller = side_.bit(
-            models_.smaller[static_cast<std::size_t>(decade - NumberLine::kLowestExponent)],
-            smaller);
+        smaller =
+            side_.bit(models_.smaller[static_cast<std::size_t>(decade - kLowestPower)], smaller);
       }
       (smaller ? to : from) = start;
     }

@@ -10,8 +10,6 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 // A position in the text that moves by items.
 struct Cursor {
   const char* p;
