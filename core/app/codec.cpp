@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "app/correction.hpp"
+#include "coding/sides.hpp"
 
 namespace mocapress::app {
 namespace {
@@ -200,6 +201,25 @@ void for_each_column(Columns& matrix, std::size_t frames, std::span<const Column
   }
 }
 
+// Codes the values of `matrix`. Throws std::invalid_argument where the reading side finds what no
+// writing side makes.
+template <class Side>
+void code_columns(Side& side, Columns& matrix, std::size_t frames, std::span<const Column> columns,
+                  const Parameters& parameters, const Bytes& choices) {
+  Corrections corrections(parameters.mantissa_limit);
+  for_each_column(matrix, frames, columns, parameters, choices, [&](double* column, auto predict) {
+    using Float = decltype(predict(0));
+    auto& correction = corrections.of<Float>();
+    for (std::size_t j = 0; j < frames; ++j) {
+      column[j] = correction.code(side, static_cast<Float>(column[j]), predict(j));
+    }
+    if constexpr (Side::kReading) {
+      if (!side.sound()) throw std::invalid_argument("the values are cut off");
+    }
+  });
+  if (!corrections.sound()) throw std::invalid_argument("a correction leaves its range");
+}
+
 // Writes the values row by row, moved to their lines.
 void restore(Columns& matrix, double* values, std::size_t frames, std::span<const Column> columns) {
   for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -244,16 +264,10 @@ Bytes encode(const double* values, std::size_t frames, std::span<const Column> c
   Columns matrix = stored(values, frames, columns);
   const Bytes choices = choose_alphas(matrix, frames, columns, parameters);
   Bytes payload = pack(choices, index_bits(parameters));
-  Encoder encoder;
-  Corrections corrections(parameters.mantissa_limit);
-  for_each_column(matrix, frames, columns, parameters, choices, [&](double* column, auto predict) {
-    using Float = decltype(predict(0));
-    auto& correction = corrections.of<Float>();
-    for (std::size_t j = 0; j < frames; ++j) {
-      correction.encode(encoder, static_cast<Float>(column[j]), predict(j));
-    }
-  });
-  encoder.finish(payload);
+  RangeWriting side;
+  code_columns(side, matrix, frames, columns, parameters, choices);
+  const Bytes coded = side.finish();
+  payload.insert(payload.end(), coded.begin(), coded.end());
   return payload;
 }
 
@@ -264,16 +278,10 @@ void decode(ByteView payload, double* values, std::size_t frames, std::span<cons
   const Bytes choices =
       unpack(payload.first(indices), clusters_of(frames, parameters.cluster) * columns.size(),
              index_bits(parameters));
-  Decoder decoder(payload.subspan(indices));
-  Corrections corrections(parameters.mantissa_limit);
+  RangeReading side(payload.subspan(indices));
   Columns matrix(frames, columns);
-  for_each_column(matrix, frames, columns, parameters, choices, [&](double* column, auto predict) {
-    auto& correction = corrections.of<decltype(predict(0))>();
-    for (std::size_t j = 0; j < frames; ++j) column[j] = correction.decode(decoder, predict(j));
-    if (!decoder.sound()) throw std::invalid_argument("the values are cut off");
-  });
-  if (!decoder.exhausted()) throw std::invalid_argument("bytes are left over after the values");
-  if (!corrections.sound()) throw std::invalid_argument("a correction leaves its range");
+  code_columns(side, matrix, frames, columns, parameters, choices);
+  if (!side.exhausted()) throw std::invalid_argument("bytes are left over after the values");
   restore(matrix, values, frames, columns);
 }
 

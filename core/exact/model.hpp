@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "coding/sides.hpp"
 #include "exact/blend.hpp"
 #include "exact/choice.hpp"
 #include "exact/codec.hpp"
@@ -21,7 +22,6 @@
 #include "exact/noise.hpp"
 #include "exact/plan.hpp"
 #include "exact/residual.hpp"
-#include "exact/sides.hpp"
 #include "exact/spread.hpp"
 #include "exact/turns.hpp"
 

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-#include "exact_fast/sides.hpp"
+#include "coding/sides.hpp"
 
 namespace mocapress::exact {
 namespace {
@@ -37,7 +37,7 @@ Multiple multiple_of(double number, const NumberLine& line) {
   const double radians = std::fabs(number) / kDegrees;
   for (unsigned kind = 0; kind <= kLongest; ++kind) {
     const double times = radians * power_of_two(58 + kLowest + static_cast<int>(kind));
-    if (times > kMostMultiple) break;
+    if (!(times <= kMostMultiple)) break;  // NaN, too
     const auto whole = static_cast<std::uint64_t>(times + 0.5);
     const Multiple multiple{kind, negative, whole / 2};
     if (whole % 2 == 1 && number_of(multiple, line) == number) return multiple;
@@ -51,7 +51,7 @@ template <class Side>
 double Noise::code(Side& side, const NumberLine& line, double number) {
   Multiple multiple{};
   if constexpr (!Side::kReading) multiple = multiple_of(number, line);
-  multiple.kind = side.symbol(kinds_, multiple.kind);
+  multiple.kind = kinds_.code(side, multiple.kind);
   if (multiple.kind == kOther) {
     return std::bit_cast<double>(side.raw(64, std::bit_cast<std::uint64_t>(number)));
   }
@@ -61,23 +61,18 @@ double Noise::code(Side& side, const NumberLine& line, double number) {
   const int finer = static_cast<int>(multiple.kind) - kLongest;  // at most 0 when written
   const auto bits = static_cast<int>(std::bit_width(multiple.half));
   const int length =
-      static_cast<int>(side.symbol(lengths_, static_cast<unsigned>(bits - finer))) + finer;
+      static_cast<int>(lengths_.code(side, static_cast<unsigned>(bits - finer))) + finer;
   if (length < 0 || length > kMostBits) {
     side.fail();
     return 0;
   }
-  if (length > 1) {
-    const std::uint64_t top = std::uint64_t{1} << (length - 1);
-    multiple.half = top | side.raw(length - 1, multiple.half & (top - 1));
-  } else {
-    multiple.half = static_cast<std::uint64_t>(length);
-  }
+  multiple.half = code_below_leading(side, length, multiple.half);
   return number_of(multiple, line);
 }
 
-template double Noise::code(Writing&, const NumberLine&, double);
-template double Noise::code(Reading&, const NumberLine&, double);
-template double Noise::code(FastWriting&, const NumberLine&, double);
-template double Noise::code(FastReading&, const NumberLine&, double);
+template double Noise::code(RangeWriting&, const NumberLine&, double);
+template double Noise::code(RangeReading&, const NumberLine&, double);
+template double Noise::code(RansWriting&, const NumberLine&, double);
+template double Noise::code(RansReading&, const NumberLine&, double);
 
 }  // namespace mocapress::exact

@@ -8,7 +8,7 @@
 #include <array>
 #include <cstdint>
 
-#include "exact/sides.hpp"
+#include "coding/numbers.hpp"
 #include "exact/start_tables.hpp"
 #include "numbers/line.hpp"
 

@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "coding/sides.hpp"
 #include "exact/noise.hpp"
 #include "exact_fast/neighbours.hpp"
 #include "exact_fast/ruler.hpp"
-#include "exact_fast/sides.hpp"
 #include "exact_fast/symbols.hpp"
 
 namespace mocapress::exact {
@@ -181,7 +181,7 @@ void with_model(const Clip& clip, Action action) {
 }  // namespace
 
 Bytes encode_fast(const double* values, std::size_t frames, const Clip& clip, Start* learned) {
-  FastWriting side;
+  RansWriting side;
   const std::size_t count = clip.columns.size();
   std::vector<double> row(count);
   with_model(clip, [&](auto model) {
@@ -195,7 +195,7 @@ Bytes encode_fast(const double* values, std::size_t frames, const Clip& clip, St
 }
 
 void decode_fast(ByteView payload, double* values, std::size_t frames, const Clip& clip) {
-  FastReading side(payload);
+  RansReading side(payload);
   with_model(clip, [&](auto model) {
     for (std::size_t f = 0; f < frames; ++f) {
       if (f % kSoundEvery == 0 && !side.sound()) break;

@@ -142,8 +142,8 @@ double Ruler::finish_rest(Side& side, const Place& place, double& level) {
     for (std::int64_t part = below; part > 1;) {
       const std::int64_t unit = std::min<std::int64_t>(part, base_ == 10 ? 1000 : 1 << 10);
       part /= unit;
-      const auto digit =
-          side.uniform(static_cast<std::uint32_t>(unit), static_cast<std::uint32_t>(left / part));
+      const auto digit = static_cast<std::int64_t>(
+          side.uniform(static_cast<std::uint64_t>(unit), static_cast<std::uint64_t>(left / part)));
       left %= part;
       rest += digit * part;
     }
@@ -156,7 +156,7 @@ double Ruler::finish_rest(Side& side, const Place& place, double& level) {
   return number;
 }
 
-template double Ruler::finish_rest(FastWriting&, const Place&, double&);
-template double Ruler::finish_rest(FastReading&, const Place&, double&);
+template double Ruler::finish_rest(RansWriting&, const Place&, double&);
+template double Ruler::finish_rest(RansReading&, const Place&, double&);
 
 }  // namespace mocapress::exact

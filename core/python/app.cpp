@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "app/codec.hpp"
+#include "coding/numbers.hpp"
+#include "coding/sides.hpp"
 #include "python/bindings.hpp"
 
 namespace mocapress {
@@ -104,24 +106,24 @@ nb::bytes encode_differences(const Integers& differences) {
   Bytes coded;
   {
     nb::gil_scoped_release unlocked;
-    Encoder encoder;
+    RangeWriting side;
     Difference<7> difference;
     for (std::size_t i = 0; i < differences.size(); ++i) {
-      difference.encode(encoder, differences.data()[i]);
+      difference.code(side, differences.data()[i]);
     }
-    encoder.finish(coded);
+    coded = side.finish();
   }
   return to_python(coded);
 }
 
 void decode_differences(const nb::bytes& coded, const IntegerOutput& differences) {
-  Decoder decoder(view(coded));
+  RangeReading side(view(coded));
   nb::gil_scoped_release unlocked;
   Difference<7> difference;
-  for (std::size_t i = 0; i < differences.size() && decoder.sound(); ++i) {
-    differences.data()[i] = difference.decode(decoder);
+  for (std::size_t i = 0; i < differences.size() && side.sound(); ++i) {
+    differences.data()[i] = difference.code(side, 0);
   }
-  if (!decoder.exhausted()) throw std::invalid_argument("the differences are cut off or too long");
+  if (!side.exhausted()) throw std::invalid_argument("the differences are cut off or too long");
 }
 
 }  // namespace
