@@ -1,14 +1,15 @@
 #include "exact/noise.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "coding/sides.hpp"
+#include "numbers/arithmetic.hpp"
 
 namespace mocapress::exact {
 namespace {
 
-constexpr double kDegrees = 57.29577951308232;
 constexpr int kLowest = -12;  // the smallest q
 constexpr unsigned kZero = 62;
 constexpr unsigned kOther = 63;
@@ -27,14 +28,14 @@ double number_of(const Multiple& multiple, const NumberLine& line) {
   if (multiple.kind == kZero) return multiple.negative ? -0.0 : 0.0;
   const double radians = static_cast<double>(2 * multiple.half + 1) *
                          power_of_two(-58 - kLowest - static_cast<int>(multiple.kind));
-  const double degrees = line.number(line.place(radians * kDegrees));
+  const double degrees = line.number(line.place(radians * kDegreesPerRadian));
   return multiple.negative ? -degrees : degrees;
 }
 
 Multiple multiple_of(double number, const NumberLine& line) {
   const bool negative = std::signbit(number);
   if (number == 0) return {kZero, negative, 0};
-  const double radians = std::fabs(number) / kDegrees;
+  const double radians = std::fabs(number) / kDegreesPerRadian;
   for (unsigned kind = 0; kind <= kLongest; ++kind) {
     const double times = radians * power_of_two(58 + kLowest + static_cast<int>(kind));
     if (!(times <= kMostMultiple)) break;  // NaN, too
@@ -46,6 +47,15 @@ Multiple multiple_of(double number, const NumberLine& line) {
 }
 
 }  // namespace
+
+NoiseColumns::NoiseColumns(std::span<const Column> columns) {
+  const auto found =
+      std::ranges::find_if(columns, [](const Column& column) { return column.noise; });
+  first_ = static_cast<std::size_t>(found - columns.begin());
+  for (const Column& column : columns.subspan(first_)) {
+    columns_.push_back({NumberLine(column.line, column.digits), Noise()});
+  }
+}
 
 template <class Side>
 double Noise::code(Side& side, const NumberLine& line, double number) {

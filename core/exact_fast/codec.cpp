@@ -74,32 +74,22 @@ double sane(double level) {
   return level > -kLargest && level < kLargest ? level : level >= kLargest ? kLargest : -kLargest;
 }
 
-struct NoiseColumn {
-  NumberLine line;
-  Noise noise;
-};
-
 template <int kOwn, int kOthers>
 class FastModel {
  public:
   FastModel(std::span<const Column> columns, double fading)
-      : count_(predicted(columns)),
+      : noise_(columns),
+        count_(noise_.first()),
         neighbours_(count_, {kOwn, kOthers, fading}),
         errors_(count_),
         last_(count_),
         next_(count_) {
     for (std::size_t c = 0; c < count_; ++c) rulers_.emplace_back(columns[c]);
-    for (const Column& column : columns.subspan(count_)) {
-      noise_.push_back({NumberLine(column.line, column.digits), Noise()});
-    }
   }
 
   template <class Side>
   void code_frame(Side& side, double* row) {
-    for (std::size_t i = 0; i < noise_.size(); ++i) {
-      double& number = row[count_ + i];
-      number = noise_[i].noise.code(side, noise_[i].line, number);
-    }
+    noise_.code(side, row);
     for (std::size_t c = 0; c < count_; ++c) row[c] = code_number(side, c, row[c]);
     if (!first_) neighbours_.learn();
     errors_.next_frame();
@@ -107,12 +97,6 @@ class FastModel {
   }
 
  private:
-  // Columns of noise come last.
-  static std::size_t predicted(std::span<const Column> columns) {
-    const auto noise = std::ranges::find_if(columns, [](const Column& c) { return c.noise; });
-    return static_cast<std::size_t>(noise - columns.begin());
-  }
-
   template <class Side>
   double code_number(Side& side, std::size_t c, double number) {
     Ruler& ruler = rulers_[c];
@@ -158,12 +142,12 @@ class FastModel {
     last_[c] = level;
   }
 
+  NoiseColumns noise_;
   std::size_t count_;  // columns that are predicted
   Neighbours neighbours_;
   Errors errors_;
   Activity activity_;
   std::vector<Ruler> rulers_;
-  std::vector<NoiseColumn> noise_;
   std::vector<double> last_;  // levels
   std::vector<double> next_;  // where the last two levels lead
   bool first_ = true;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "numbers/arithmetic.hpp"
 #include "numbers/powers.hpp"
 
 namespace mocapress {
@@ -14,7 +15,6 @@ namespace {
 
 constexpr int kMostSignificant = 15;  // every number of 15 digits has a double of its own
 constexpr int kMostExponent = 300;
-constexpr double kDegrees = 57.29577951308232;  // in a radian
 constexpr std::int64_t kInfinity = 0x7f800000;  // its bits
 constexpr std::int64_t kFarthest = std::int64_t{1} << 62;
 
@@ -111,7 +111,7 @@ NumberLine::NumberLine(Line line, int digits) : line_(line), digits_(digits) {
   if (line == Line::significant) per_decade_ = 9 * integer_power(10, digits - 1);
   if (line == Line::decimals || printed()) scale_ = power_of_ten(digits);
   if (!printed()) return;
-  if (line == Line::degrees32) unit_ = kDegrees;
+  if (line == Line::degrees32) unit_ = kDegreesPerRadian;
   float coarse = 0x1p-126f;
   while (coarse * 0x1p-23 * unit_ * scale_ <= 1) coarse *= 2;
   coarse_bits_ = std::bit_cast<std::int32_t>(coarse);
