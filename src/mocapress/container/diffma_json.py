@@ -212,7 +212,7 @@ def json_to_clip(data: bytes | memoryview, *, bound: float | None = None) -> Cli
         clip = columns_of(layout, document.skeleton if layout.format == "amc" else None)
         if clip.channels != len(document.names):
             raise _misfit("channels", len(document.names), clip.channels)
-        return clip.with_values(document.decode(bound))
+        return clip.with_frames(document.decode(bound), clip.frame_time)
     return Clip.of(
         document.decode(bound), _columns(document), document.frame_time, document.skeleton
     )
