@@ -10,8 +10,8 @@ from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.container import Mcm, pack_model, parse_model, peek_model
 from mocapress.container.mcm import LONGEST_FILE, LONGEST_HEADER
 from mocapress.errors import CorruptError, MissingModelError, MocapressError, ParameterError
-from mocapress.formats.files import read
 from mocapress.motion import Clip
+from mocapress.source import Named, Source, read
 from mocapress.storage import write_whole
 
 __all__ = ["Place", "find_model", "load_model", "model_bytes", "save_model", "train"]
@@ -23,13 +23,13 @@ Place = Model | str | Path
 """Where a model may be: it itself, its file, or a folder with ``.mcm`` files."""
 
 
-def train(sources: Iterable[str | Path | Clip], codec: str | Codec = DEFAULT_CODEC) -> Model:
+def train(sources: Iterable[Named | Clip], codec: str | Codec = DEFAULT_CODEC) -> Model:
     """Learn a model from clips, for compressing clips like these.
 
     Parameters
     ----------
     sources
-        Clips, or paths of AMC and BVH files; read one at a time.
+        Clips, or motion files: paths, contents or streams; read one at a time.
     codec
         A codec that learns, or its text.
 
@@ -42,11 +42,18 @@ def train(sources: Iterable[str | Path | Clip], codec: str | Codec = DEFAULT_COD
 
     """
     learner = codecs.learner(codecs.codec(codec) if isinstance(codec, str) else codec)
-    clips = (source if isinstance(source, Clip) else read(source) for source in sources)
+    clips = (source if isinstance(source, Clip) else _read(source) for source in sources)
     first = next(clips, None)
     if first is None:
         raise ParameterError("nothing to learn from", expected="at least one clip")
     return learner.train(chain([first], clips))
+
+
+def _read(named: Named) -> Clip:
+    source = Source(named)
+    clip = read(source)
+    source.report()
+    return clip
 
 
 def model_bytes(model: Model) -> bytes:

@@ -23,7 +23,8 @@ from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.diffma.document import read_document
 from mocapress.container import diffma_json
 from mocapress.errors import FormatError, MocapressError, UnsupportedError
-from mocapress.formats.files import find_asf, sniff
+from mocapress.formats import recognise
+from mocapress.source import Source
 
 ROOT = Path(__file__).parents[2]
 GOLDEN = ROOT / "tests/golden"
@@ -104,7 +105,7 @@ def test_files_come_back_with_the_decoded_values(samples: Path, name: str, codec
     assert len(back.splitlines()) == len((samples / name).read_bytes().splitlines())
     assert mp.decompress(text) == back
     assert mp.decompress(lzma.compress(text)) == back
-    assert diffma_json.file_to_json(back, DiffMA(bound=1e-9)) != text
+    assert diffma_json.file_to_json(Source(back), DiffMA(bound=1e-9)) != text
 
 
 def test_a_coarser_level_is_what_a_player_asked_for(samples: Path) -> None:
@@ -273,10 +274,10 @@ def test_javascript_decodes_the_same_bits_of_the_corpus(
 ) -> None:
     files, expected = [], []
     for i, source in enumerate(corpus_clips):
-        if sniff(source.read_bytes(), source.name) not in ("amc", "bvh"):
+        if recognise(source.read_bytes(), source.name) is None:
             continue
         try:
-            text = mp.to_json(source, asf_path=find_asf(source))
+            text = mp.to_json(source)
         except FormatError:
             continue  # broken, or with another's skeleton
         files.append(tmp_path / f"{i}.diffma.json")

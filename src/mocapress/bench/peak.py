@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mocapress.bench.contenders import Tool, contenders
 from mocapress.bench.rivals import Rival
-from mocapress.formats.files import sniff, split
+from mocapress.source import Source
 
 
 def _peak() -> float:
@@ -30,7 +30,7 @@ def main(path: Path, name: str) -> None:
     if isinstance(contender, Tool):
         contender.decompress(contender.compress(data))
     else:
-        clip, layout, _ = split(data, sniff(data, path.name) or "")
+        clip, layout, _ = Source(data, path.name).split()
         if isinstance(contender, Rival):
             packed = contender.compress(clip.values)
             values = contender.decompress(packed, (clip.frames, clip.channels))

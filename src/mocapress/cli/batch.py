@@ -11,6 +11,7 @@ from typing import Any, NoReturn
 import typer
 
 from mocapress.errors import MocapressError, ParameterError
+from mocapress.source import Source
 
 STREAM = Path("-")
 
@@ -58,9 +59,14 @@ def usage(message: str) -> NoReturn:
     raise typer.Exit(2)
 
 
-def contents(path: Path) -> bytes:
-    """Read a job's file, or stdin."""
-    return sys.stdin.buffer.read() if path == STREAM else path.read_bytes()
+def opened(job: Job) -> Source:
+    """Open a job's file, or stdin."""
+    return Source(sys.stdin.buffer) if job.source == STREAM else Source(job.source)
+
+
+def warning_of(source: Source, more: str | None = None) -> str | None:
+    """Put the warnings about a source into one."""
+    return "; ".join([*map(str, source.warnings), *([more] if more else [])]) or None
 
 
 def target(job: Job, output: Path | None, rename: Callable[[Path], Path], *, many: bool) -> Path:
