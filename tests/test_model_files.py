@@ -31,7 +31,8 @@ def other(samples: Path) -> mp.Model:
 
 @pytest.fixture
 def walk(samples: Path) -> bytes:
-    return b"".join((samples / "freebvh.bvh").read_bytes().splitlines(keepends=True)[:-9])
+    lines = (samples / "freebvh.bvh").read_bytes().splitlines(keepends=True)
+    return b"".join(lines[:-9]).replace(b"Frames: 69", b"Frames: 60")
 
 
 @pytest.fixture

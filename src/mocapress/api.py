@@ -106,7 +106,7 @@ def compress_source(
             embedded = source.used.read() if embed_asf and source.used else b""
             if embedded:
                 source.warn_of_guess()
-            blob, warning = _compress_motion(data, parts, made, embedded, model)
+            blob, warning = _compress_motion(source, parts, made, embedded, model)
     if blob is None or len(data) < _SMALL or len(blob) > _POOR * len(data):
         plain = _compress_plain(data)
         if blob is None or len(plain) < len(blob):
@@ -115,10 +115,11 @@ def compress_source(
 
 
 def _compress_motion(
-    data: bytes, parts: Split, codec: Codec, embedded: bytes, model: Model | None
+    source: Source, parts: Split, codec: Codec, embedded: bytes, model: Model | None
 ) -> tuple[bytes | None, str | None]:
-    clip, layout, error = parts
-    warning = f"{error}; the rest of the file is kept as text" if error else None
+    clip, layout, problems = parts
+    data, name = source.data, source.name or None
+    warning = "; ".join(str(problem.error(name)) for problem in problems) or None
     if layout.verbatim_bytes() + len(layout.tail) > len(data) / 2:
         return None, warning or "numbers in no regular form; stored by a general-purpose compressor"
     encoded = codec.encode(clip, model=model)
@@ -153,7 +154,7 @@ def _compress_plain(data: bytes) -> bytes:
     )
 
 
-def read(source: Named, *, asf_path: str | Path | None = None) -> Clip:
+def read(source: Named, *, asf_path: str | Path | None = None, strict: bool = True) -> Clip:
     """Read a motion file: of any format, or DiffMA JSON.
 
     Parameters
@@ -166,6 +167,11 @@ def read(source: Named, *, asf_path: str | Path | None = None) -> Clip:
         that of the same name, of the subject, or the only one in the folder, which is warned of.
         ``metadata`` of the clip says which one was used (``skeleton``) and how it was found
         (``skeleton_found``). One that is broken or does not fit is left away with a warning.
+    strict
+        Whether a file that has lost frames is refused: one with fewer rows than it declares, or
+        with rows that cannot be read. With ``strict=False`` it is read as far as possible, with a
+        ``MotionWarning``; a row that cannot be read between others keeps the values of the one
+        before. What loses nothing, such as a row more than declared, always is a warning.
 
     Raises
     ------
@@ -177,16 +183,16 @@ def read(source: Named, *, asf_path: str | Path | None = None) -> Clip:
 
     """
     opened = Source(source)
-    clip = read_source(opened, asf_path)
+    clip = read_source(opened, asf_path, strict=strict)
     opened.report()
     return clip
 
 
-def read_source(source: Source, asf_path: str | Path | None = None) -> Clip:
+def read_source(source: Source, asf_path: str | Path | None = None, *, strict: bool = True) -> Clip:
     """Read a motion file; see ``read``."""
     if source.kind == DIFFMA_JSON:
         return diffma_json.json_to_clip(source.data)
-    return read_motion(source, asf_path)
+    return read_motion(source, asf_path, strict=strict)
 
 
 def write(clip: Clip, path: str | Path, *, to: str | None = None, force: bool = False) -> None:

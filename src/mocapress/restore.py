@@ -67,6 +67,7 @@ def load(
     *,
     asf_path: str | Path | None = None,
     models: Sequence[Place] = (),
+    strict: bool = True,
 ) -> Clip:
     """Give the clip in a ``.mcz`` or a DiffMA JSON, or some of its frames.
 
@@ -81,17 +82,22 @@ def load(
         by ``read``.
     models
         Where to look for the model that the file may need, as in ``decompress``.
+    strict
+        Whether a clip is refused whose file had lost frames before it was compressed, as by
+        ``read``.
 
     Raises
     ------
     CorruptError
         When the file is damaged, as far as it was read.
+    FormatError
+        When it holds no motion, or only a part of it.
     MissingModelError
         When the model that the file needs is nowhere.
 
     """
     opened = Source(source)
-    clip = load_source(opened, frames, asf_path=asf_path, models=models)
+    clip = load_source(opened, frames, asf_path=asf_path, models=models, strict=strict)
     opened.report()
     return clip
 
@@ -102,6 +108,7 @@ def load_source(
     *,
     asf_path: str | Path | None = None,
     models: Sequence[Place] = (),
+    strict: bool = True,
 ) -> Clip:
     """Give a clip or some of its frames; see ``load``."""
     if source.kind == DIFFMA_JSON:
@@ -114,7 +121,8 @@ def load_source(
         if of is None or of.split is None:
             expected = f"{formats.names(formats.readable())} inside"
             raise FormatError("no motion in this file", expected=expected)
-        clip = source.split(asf_path, of, contents).clip
+        clip, _, problems = source.split(asf_path, of, contents)
+        source.accept(problems, strict=strict)
         return clip if frames is None else clip.with_values(clip.values[frames])
     codec, layout = _open(mcz)
     clip = _columns(layout, source, asf_path, mcz.skeleton)

@@ -9,7 +9,7 @@ import re
 import stat
 import warnings
 import weakref
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -20,6 +20,7 @@ import numpy as np
 from mocapress import formats
 from mocapress.errors import FormatError, MocapressError, MotionWarning, ParameterError
 from mocapress.formats import Format, Split
+from mocapress.formats.problems import Problem
 from mocapress.motion import Clip, Skeleton
 from mocapress.motion.columns import skeleton_columns
 
@@ -245,6 +246,21 @@ class Source:
         error.what += "; the skeleton is left away"
         self.warnings.append(MotionWarning(name, error))
 
+    def accept(self, problems: Sequence[Problem], *, strict: bool = True) -> None:
+        """Refuse a file that has lost motion, where reading is strict; warn of all else.
+
+        Raises
+        ------
+        FormatError
+            With place, expected and found.
+
+        """
+        file = self.name or None
+        lost = next((problem for problem in problems if problem.loses_motion), None)
+        if strict and lost is not None:
+            raise lost.error(file)
+        self.warnings += [MotionWarning(p.name, p.error(file)) for p in problems]
+
     def told(self, clip: Clip) -> Clip:
         """Say in a clip's metadata which skeleton was used, and how it was found."""
         if self.used is None:
@@ -308,7 +324,7 @@ def _without(name: str, suffixes: Iterable[str]) -> str:
     return name[: len(name) - len(ending)]
 
 
-def read(source: Source, asf_path: str | Path | None = None) -> Clip:
+def read(source: Source, asf_path: str | Path | None = None, *, strict: bool = True) -> Clip:
     """Read a motion file; a skeleton alone gives a clip of it without frames.
 
     Raises
@@ -327,8 +343,7 @@ def read(source: Source, asf_path: str | Path | None = None) -> Clip:
         known = formats.names(tuple(f for f in formats.formats() if f.split or f.read_skeleton))
         raise FormatError("not a motion file", file=file, expected=known)
     parts = source.split(asf_path)
-    if parts.error:
-        raise parts.error
+    source.accept(parts.problems, strict=strict)
     source.warn_of_guess()
     return parts.clip
 

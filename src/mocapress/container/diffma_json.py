@@ -103,9 +103,8 @@ def file_to_json(source: Source, codec: DiffMA, *, asf_path: str | Path | None =
         When it is no motion file, or a broken one.
 
     """
-    clip, layout, error = source.split(asf_path)
-    if error:
-        raise error
+    clip, layout, problems = source.split(asf_path)
+    source.accept(problems)
     source.warn_of_guess()
     writer = Writer()
     writer.integer(Kind[layout.format.upper()])

@@ -1,12 +1,12 @@
 """What a format is: everything that the rest of mocapress knows of a kind of motion file."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from mocapress.errors import FormatError
 from mocapress.formats.layout import Layout
+from mocapress.formats.problems import Problem
 from mocapress.motion import Clip, Skeleton
 
 
@@ -15,18 +15,18 @@ class Split(NamedTuple):
 
     clip: Clip
     layout: Layout
-    error: FormatError | None
-    """Why the file could be read only in part; the rest is in the layout's tail."""
+    problems: tuple[Problem, ...]
+    """Where the file departs from its format. What is no row is in the layout's tail."""
 
 
-def split_of(clip: Clip, layout: Layout, error: FormatError | None, file: str | None) -> Split:
+def split_of(clip: Clip, layout: Layout, problems: Sequence[Problem], file: str | None) -> Split:
     """Put a split together; the columns get the number formats that the layout found."""
     columns = tuple(
         replace(column, decimal=number_format)
         for column, number_format in zip(clip.columns, layout.formats, strict=True)
     )
     named = replace(clip.with_columns(columns), name=Path(file).stem if file else "")
-    return Split(named, layout, error)
+    return Split(named, layout, tuple(problems))
 
 
 def _as_it_is(clip: Clip) -> Clip:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.codecs.contract import Chunk, Encoded, Model
-from mocapress.codecs.exact.couplings import find_couplings
+from mocapress.codecs.exact.coupling_search import find_couplings
 from mocapress.codecs.exact.roles import Role, Roles, find_roles, read_roles, write_roles
 from mocapress.codecs.exact.skeletons import is_known
 from mocapress.codecs.exact.start import Learned, Start, model_of, start_of
@@ -20,7 +20,7 @@ from mocapress.records import Reader, Writer
 _MOST_FRAMES = 1 << 20
 _NO_MODEL, _MODEL = 0, 1
 _FAST_LEVELS = 2
-"""Up to this level couplings are not looked for: core/exact_fast.hpp has no use for them."""
+"""Up to this level couplings are not looked for: core/exact_fast/codec.hpp has no use for them."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,19 @@
+// Which predictors a level has.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "exact/codec.hpp"
+#include "exact/expert.hpp"
+
+namespace mocapress::exact {
+
+// Whether there are guesses from the skeleton's geometry.
+bool knows_skeleton(std::span<const Column> columns, int level);
+
+// Of the columns that are predicted.
+std::vector<ExpertPlan> plans(std::span<const Column> columns, std::span<const Coupling> couplings,
+                              int level);
+
+}  // namespace mocapress::exact
