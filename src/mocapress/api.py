@@ -7,12 +7,14 @@ from pathlib import Path
 
 from mocapress import codecs, formats
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
-from mocapress.container import Kind, diffma_json, pack, pack_file
-from mocapress.errors import FormatError, MocapressError, UnsupportedError
+from mocapress.codecs.fallback import first_that_works
+from mocapress.codecs.loss import Loss, checked_loss
+from mocapress.container import Kind, diffma_json, pack, pack_file, parse
+from mocapress.errors import CorruptError, FormatError, UnsupportedError, VerificationError
 from mocapress.formats import Format, Split
 from mocapress.models import load_model
 from mocapress.motion import Clip
-from mocapress.restore import decompress, load
+from mocapress.restore import chunks_of, decompress, load
 from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, Named, Source
 from mocapress.source import read as read_motion
 from mocapress.storage import write_whole
@@ -32,6 +34,8 @@ class Compressed:
     """The ``.mcz`` file."""
     warning: str | None
     """Why the numbers, or a part of them, were not compressed as motion."""
+    loss: Loss | None = None
+    """What a lossy codec lost, measured from what it decodes to; None where nothing is lost."""
 
 
 def compress(
@@ -61,7 +65,8 @@ def compress(
     Returns
     -------
     bytes
-        The ``.mcz`` file; it was decoded again and compared with the source.
+        The ``.mcz`` file; it was decoded again and compared with the source. Where a codec fails,
+        another way is taken; ``compress_source`` says so.
 
     Raises
     ------
@@ -71,12 +76,10 @@ def compress(
         When the ASF that was given cannot be read.
 
     """
-    opened = Source(source)
     if model is not None and not isinstance(model, Model):
         model = load_model(model)
-    made = compress_source(opened, codec, asf_path=asf_path, embed_asf=embed_asf, model=model)
-    opened.report()
-    return made.blob
+    opened = Source(source)
+    return compress_source(opened, codec, asf_path=asf_path, embed_asf=embed_asf, model=model).blob
 
 
 def compress_source(
@@ -92,7 +95,7 @@ def compress_source(
     if model is not None:
         codecs.learner(made, model)
     data = source.data
-    blob, warning = None, None
+    blob, warning, loss = None, None, None
     if source.format is None:
         warning = "not a motion file; stored by a general-purpose compressor"
     elif source.format.split:
@@ -106,43 +109,59 @@ def compress_source(
             embedded = source.used.read() if embed_asf and source.used else b""
             if embedded:
                 source.warn_of_guess()
-            blob, warning = _compress_motion(source, parts, made, embedded, model)
+            blob, warning, loss = _compress_motion(source, parts, made, embedded, model)
     if blob is None or len(data) < _SMALL or len(blob) > _POOR * len(data):
         plain = _compress_plain(data)
         if blob is None or len(plain) < len(blob):
-            blob = plain
-    return Compressed(blob, warning)
+            blob, loss = plain, None
+    return Compressed(blob, warning, loss)
 
 
 def _compress_motion(
     source: Source, parts: Split, codec: Codec, embedded: bytes, model: Model | None
-) -> tuple[bytes | None, str | None]:
+) -> tuple[bytes | None, str | None, Loss | None]:
     clip, layout, problems = parts
     data, name = source.data, source.name or None
     warning = "; ".join(str(problem.error(name)) for problem in problems) or None
-    if layout.verbatim_bytes() + len(layout.tail) > len(data) / 2:
-        return None, warning or "numbers in no regular form; stored by a general-purpose compressor"
-    encoded = codec.encode(clip, model=model)
-    blob = pack_file(
-        kind=Kind[layout.format.upper()],
-        size=len(data),
-        digest=hashlib.sha256(data).digest(),
-        payloads=[(chunk.frames, chunk.restart, chunk.payload) for chunk in encoded.chunks],
-        columns=clip.channels,
-        codec=codecs.spec(codec),
-        model=model.digest if model else b"",
-        codec_header=encoded.header,
-        layout=pack(layout.to_bytes()),
-        skeleton=pack(embedded) if embedded else b"",
-    )
-    if codec.lossless:
-        try:
-            restored = decompress(blob, models=[model] if model else [])
-        except MocapressError as failure:
-            return None, f"codec {codec.id} failed its check ({failure}); stored without it"
-        if restored != data:
-            return None, f"codec {codec.id} does not restore this file; stored without it"
-    return blob, warning
+    if not clip.frames or layout.verbatim_bytes() + len(layout.tail) > len(data) / 2:
+        reason = "numbers in no regular form" if clip.frames else "no frames"
+        return None, warning or f"{reason}; stored by a general-purpose compressor", None
+
+    def work(way: Codec) -> tuple[bytes, Loss | None]:
+        own = model if way is codec else None
+        encoded = way.encode(clip, model=own)
+        blob = pack_file(
+            kind=Kind[layout.format.upper()],
+            size=len(data),
+            digest=hashlib.sha256(data).digest(),
+            payloads=[(chunk.frames, chunk.restart, chunk.payload) for chunk in encoded.chunks],
+            columns=clip.channels,
+            codec=codecs.spec(way),
+            model=own.digest if own else b"",
+            codec_header=encoded.header,
+            layout=pack(layout.to_bytes()),
+            skeleton=pack(embedded) if embedded else b"",
+        )
+        return blob, _check(blob, data, way, clip, own)
+
+    found, failure = first_that_works(codec, work)
+    blob, loss = found or (None, None)
+    return blob, "; ".join(filter(None, (failure, warning))) or None, loss
+
+
+def _check(blob: bytes, data: bytes, codec: Codec, clip: Clip, model: Model | None) -> Loss | None:
+    """Decode a file and compare: bytes of a lossless codec, else values."""
+    failure = "the file does not come back"
+    try:
+        if not codec.lossless:
+            mcz = parse(blob)
+            values = codec.decode(mcz.codec_header, chunks_of(mcz), clip.columns, model=model)
+            return checked_loss(codec, clip, values)
+        if decompress(blob, models=[model] if model else []) == data:
+            return None
+    except CorruptError as error:
+        failure = error.what
+    raise VerificationError(f"codec {codec.id} failed its check ({failure}); please report this")
 
 
 def _compress_plain(data: bytes) -> bytes:
@@ -182,10 +201,7 @@ def read(source: Named, *, asf_path: str | Path | None = None, strict: bool = Tr
         When it cannot be opened.
 
     """
-    opened = Source(source)
-    clip = read_source(opened, asf_path, strict=strict)
-    opened.report()
-    return clip
+    return read_source(Source(source), asf_path, strict=strict)
 
 
 def read_source(source: Source, asf_path: str | Path | None = None, *, strict: bool = True) -> Clip:

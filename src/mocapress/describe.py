@@ -15,9 +15,11 @@ from mocapress.restore import chunks_of, load, load_source
 from mocapress.source import Source
 
 
-def describe_file(source: Source, *, asf_path: Path | None = None) -> dict[str, Any]:
+def describe_file(
+    source: Source, *, asf_path: Path | None = None, strict: bool = True
+) -> dict[str, Any]:
     """Describe a motion file."""
-    clip = api.read_source(source, asf_path)
+    clip = api.read_source(source, asf_path, strict=strict)
     return {"bytes": source.size, "format": source.kind} | describe_clip(clip)
 
 
@@ -79,7 +81,11 @@ def describe_json(blob: bytes) -> dict[str, Any]:
 
 
 def describe_mcz(
-    source: Source, *, asf_path: Path | None = None, models: Sequence[Place] = ()
+    source: Source,
+    *,
+    asf_path: Path | None = None,
+    models: Sequence[Place] = (),
+    strict: bool = True,
 ) -> dict[str, Any]:
     """Describe a ``.mcz`` file: what it holds, and where its bytes go.
 
@@ -105,7 +111,7 @@ def describe_mcz(
     }
     if mcz.kind is Kind.BYTES:
         return facts
-    columns = load_source(source, slice(0), asf_path=asf_path)
+    columns = load_source(source, slice(0), asf_path=asf_path, strict=strict)
     facts |= describe_clip(columns, mcz.frames)
     if mcz.frames and mcz.columns:
         facts["bits_per_sample"] = 8 * len(blob) / (mcz.frames * mcz.columns)

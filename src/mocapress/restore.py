@@ -96,10 +96,7 @@ def load(
         When the model that the file needs is nowhere.
 
     """
-    opened = Source(source)
-    clip = load_source(opened, frames, asf_path=asf_path, models=models, strict=strict)
-    opened.report()
-    return clip
+    return load_source(Source(source), frames, asf_path=asf_path, models=models, strict=strict)
 
 
 def load_source(

@@ -10,6 +10,7 @@ from mocapress import codecs
 from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.diffma.codec import by_channel
 from mocapress.codecs.diffma.document import Document, Level, read_document
+from mocapress.codecs.fallback import naming_faults
 from mocapress.container import Kind, pack, unpack
 from mocapress.errors import (
     CorruptError,
@@ -80,10 +81,7 @@ def to_json(
     made = diffma_codec(codec) if isinstance(codec, str) else codec
     if isinstance(source, Clip):
         return clip_to_json(source, made)
-    opened = Source(source)
-    text = file_to_json(opened, made, asf_path=asf_path)
-    opened.report()
-    return text
+    return file_to_json(Source(source), made, asf_path=asf_path)
 
 
 def diffma_codec(text: str) -> DiffMA:
@@ -120,10 +118,15 @@ def clip_to_json(clip: Clip, codec: DiffMA, *, layout: bytes = b"") -> bytes:
     UnsupportedError
         When a value is no finite number, which JSON cannot hold.
     VerificationError
-        When what was decoded is not what was encoded.
+        When the codec fails, or what was decoded is not what was encoded.
 
     """
     _refuse_not_finite(clip)
+    with naming_faults(codec):
+        return _checked_json(clip, codec, layout)
+
+
+def _checked_json(clip: Clip, codec: DiffMA, layout: bytes) -> bytes:
     plans, coding, channels = codec.plan(clip), codec.coding, by_channel(clip.values)
     levels = []
     for bound in codec.level_bounds:
