@@ -117,7 +117,7 @@ def describe_mcz(
         facts["bits_per_sample"] = 8 * len(blob) / (mcz.frames * mcz.columns)
     measure = getattr(codecs.codec(mcz.codec), "measure", None)
     if measure is not None and facts["model_found"] is not False:
-        clip = columns.with_values(load(blob, models=models).values)
+        clip = columns.with_frames(load(blob, models=models).values, columns.frame_time)
         facts |= measure(clip, Encoded(mcz.codec_header, chunks_of(mcz)), mcz.size)
     return facts
 

@@ -110,7 +110,7 @@ def load_source(
     """Give a clip or some of its frames; see ``load``."""
     if source.kind == DIFFMA_JSON:
         clip = diffma_json.json_to_clip(source.data)
-        return clip if frames is None else clip.with_values(clip.values[frames])
+        return clip if frames is None else clip[frames]
     mcz = parse(source.data)
     if mcz.kind is Kind.BYTES:
         contents = decompress(source)
@@ -120,16 +120,17 @@ def load_source(
             raise FormatError("no motion in this file", expected=expected)
         clip, _, problems = source.split(asf_path, of, contents)
         source.accept(problems, strict=strict)
-        return clip if frames is None else clip.with_values(clip.values[frames])
+        return clip if frames is None else clip[frames]
     codec, layout = _open(mcz)
     clip = _columns(layout, source, asf_path, mcz.skeleton)
     source.warn_of_guess()
     rows = range(mcz.frames)[frames or slice(None)]
     if not rows:
-        return clip
+        return clip[:: rows.step]
     first, last = min(rows[0], rows[-1]), max(rows[0], rows[-1]) + 1
     model = _model(mcz, codec, source, models)
-    return clip.with_values(_decode(mcz, codec, clip, first, last, model)[:: rows.step])
+    decoded = _decode(mcz, codec, clip, first, last, model)
+    return clip.with_frames(decoded, clip.frame_time)[:: rows.step]
 
 
 def _columns(

@@ -38,7 +38,9 @@ def convert(
     models: Models = None,
     fps: Annotated[
         float | None,
-        typer.Option("--fps", help="Frames per second of an AMC, which does not say.", min=1e-3),
+        typer.Option(
+            "--fps", help="Frames per second, instead of those that the file states.", min=1e-3
+        ),
     ] = None,
     lenient: Lenient = False,
     jobs: Jobs = 1,
@@ -53,7 +55,7 @@ def convert(
     from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
     from mocapress.container import diffma_json
     from mocapress.formats import readable, suffixes
-    from mocapress.motion.convert import DEFAULT_FPS, frame_time_of
+    from mocapress.motion.convert import with_rate
 
     made = _format(to, output)
     refuse_other_kinds(output, made.suffixes, known_endings())
@@ -79,11 +81,7 @@ def convert(
         job.times = False  # what is written is new
         source = job.opened()
         clip = _read(source, asf, places_for(job, given), strict=not lenient)
-        warning = None
-        if fps is not None:
-            clip = clip.with_frame_time(frame_time_of(fps))
-        elif clip.frame_time is None and made.timed:
-            warning = f"the file does not say its frame rate; taken as {DEFAULT_FPS:g}"
+        clip = with_rate(clip, fps, needed=made.timed)
         (_, data), *beside = api.printed(clip, made).items()
         job.outputs[job.target] = data
         if job.target != STREAM:
@@ -94,7 +92,6 @@ def convert(
             "frames": clip.frames,
             "skeleton": clip.metadata.get("skeleton"),
             "skeleton_found": clip.metadata.get("skeleton_found"),
-            "warning": warning,
         }
 
     run(files, work, threads=jobs, json=json, show=_show, debug=debug)

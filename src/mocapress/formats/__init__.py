@@ -140,4 +140,4 @@ def columns_of(layout: Layout, skeleton: Skeleton | None = None) -> Clip:
         replace(column, decimal=number_format)
         for column, number_format in zip(empty.columns, layout.formats, strict=True)
     )
-    return empty.with_columns(columns).with_values(empty.values[:0])
+    return empty.with_columns(columns)[:0]
