@@ -9,9 +9,13 @@ from typing import NoReturn
 import numpy as np
 
 from mocapress.errors import FormatError
+from mocapress.formats.names import decoded, escaped, words
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 
 _CHANNELS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")
+_RESERVED = frozenset({"root", "begin", "end"})
+_ROOT_NAME = "mocapress-root"
+"""Begins the line of ``:documentation`` that gives the name of a root not called ``root``."""
 _LIMIT = re.compile(r"\(\s*([^\s()]+)[\s,]+([^\s()]+)\s*\)")
 
 
@@ -60,7 +64,7 @@ class _Parser:
 
     def skeleton(self) -> Skeleton:
         units: dict[str, str] = {}
-        name, section = "", ""
+        name, section, root_name = "", "", "root"
         bones: list[_Bone] = []
         children: list[_Line] = []
         for line in self.lines:
@@ -70,6 +74,8 @@ class _Parser:
                     name = " ".join(line.words)
                 elif section == ":root":
                     bones.insert(0, _Bone("root", line.number))
+            elif section == ":documentation" and line.key == _ROOT_NAME and line.words:
+                root_name = line.words[0]
             elif section == ":units" and line.words:
                 units[line.key] = line.words[0]
             elif section == ":root":
@@ -88,6 +94,7 @@ class _Parser:
             length = float(units["length"]) if "length" in units else None
         except ValueError:
             self.fail(1, "unit of length", "a number", repr(units["length"]))
+        bones[0].name = root_name
         joints = _joints(bones)
         return Skeleton(joints, "fixed", angle, length, name, {"mass": units.get("mass", "")})
 
@@ -197,8 +204,8 @@ class _Parser:
 
 
 def _lines(data: bytes) -> Iterator[_Line]:
-    for number, text in enumerate(data.decode("latin-1").split("\n"), 1):
-        words = text.split("#", 1)[0].split()
+    for number, text in enumerate(data.split(b"\n"), 1):
+        words = [word.decode("latin-1") for word in text.split(b"#", 1)[0].split()]
         if words:
             yield _Line(number, words[0].lower(), words[1:], " ".join(words))
 
@@ -235,7 +242,7 @@ def _joints(bones: list[_Bone]) -> tuple[Joint, ...]:
         order.append(i)
     return tuple(
         Joint(
-            bone.name,
+            decoded(bone.name.encode("latin-1")),
             -1 if i == 0 else place[bone.parent],
             bone.position if i == 0 else bones[bone.parent].vector,
             bone.channels,
@@ -254,14 +261,16 @@ def format_asf(skeleton: Skeleton) -> bytes:
     Every joint but the root has one bone, at whose end all its children lie.
     """
     vectors = bone_vectors(skeleton)
+    called = asf_words(skeleton)
     root = skeleton.joints[0]
     length = skeleton.length_unit if skeleton.length_unit is not None else 1.0
     lines = [
         ":version 1.10",
-        f":name {skeleton.name or 'skeleton'}",
+        f":name {escaped(skeleton.name or 'skeleton', '#')}",
         ":units",
         f"  mass 1.0\n  length {length!r}\n  angle {skeleton.angle_unit}",
         ":documentation\n   written by mocapress",
+        *([f"   {_ROOT_NAME} {escaped(root.name, ' #')}"] if root.name != "root" else []),
         ":root",
         f"   order {' '.join(root.channels).upper()}",
         f"   axis {root.axis_order.upper()}",
@@ -274,7 +283,7 @@ def format_asf(skeleton: Skeleton) -> bytes:
         x, y, z = vectors[i]
         direction = (x / size, y / size, z / size) if size else (0.0, 1.0, 0.0)
         lines += [
-            f"  begin\n     id {i}\n     name {joint.name}",
+            f"  begin\n     id {i}\n     name {called[i]}",
             f"     direction {_text(direction)}\n     length {size!r}",
             f"     axis {_text(joint.axis)}  {joint.axis_order.upper()}",
         ]
@@ -284,12 +293,19 @@ def format_asf(skeleton: Skeleton) -> bytes:
             lines.append("    limits " + "\n           ".join(f"({a!r} {b!r})" for a, b in limits))
         lines.append("  end")
     lines.append(":hierarchy\n  begin")
-    for i, joint in enumerate(skeleton.joints):
-        names = [child.name for child in skeleton.joints if child.parent == i]
+    children: list[list[str]] = [[] for _ in skeleton.joints]
+    for i, joint in enumerate(skeleton.joints[1:], 1):
+        children[joint.parent].append(called[i])
+    for i, names in enumerate(children):
         if names:
-            lines.append(f"    {joint.name if i else 'root'} {' '.join(names)}")
+            lines.append(f"    {called[i]} {' '.join(names)}")
     lines.append("  end\n")
-    return "\n".join(lines).encode("latin-1", "replace")
+    return "\n".join(lines).encode()
+
+
+def asf_words(skeleton: Skeleton) -> list[str]:
+    """Give the words by which an ASF and its AMC call the joints; the root is ``root``."""
+    return ["root", *words([joint.name for joint in skeleton.joints[1:]], _RESERVED)]
 
 
 def bone_vectors(skeleton: Skeleton) -> list[Vec3]:
