@@ -12,6 +12,7 @@ import typer
 
 from mocapress.cli.warned import collecting, kept
 from mocapress.errors import MocapressError, MotionWarning, ParameterError
+from mocapress.source import Source
 
 STREAM = Path("-")
 
@@ -60,9 +61,9 @@ def usage(message: str) -> NoReturn:
     raise typer.Exit(2)
 
 
-def contents(path: Path) -> bytes:
-    """Read a job's file, or stdin."""
-    return sys.stdin.buffer.read() if path == STREAM else path.read_bytes()
+def opened(job: Job) -> Source:
+    """Open a job's file, or stdin."""
+    return Source(sys.stdin.buffer) if job.source == STREAM else Source(job.source)
 
 
 def target(job: Job, output: Path | None, rename: Callable[[Path], Path], *, many: bool) -> Path:

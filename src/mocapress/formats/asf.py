@@ -9,14 +9,16 @@ from typing import NoReturn
 import numpy as np
 
 from mocapress.errors import FormatError
+from mocapress.formats.contract import Format
 from mocapress.formats.names import decoded, escaped, words
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 
 _CHANNELS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")
+_KEYWORD = re.compile(rb"^\s*:(bonedata|root|hierarchy|version)\b", re.MULTILINE | re.IGNORECASE)
 _RESERVED = frozenset({"root", "begin", "end"})
-_ROOT_NAME = "mocapress-root"
-"""Begins the line of ``:documentation`` that gives the name of a root not called ``root``."""
-_LIMIT = re.compile(r"\(\s*([^\s()]+)[\s,]+([^\s()]+)\s*\)")
+# In the documentation: the name of a root that is called otherwise.
+_ROOT_NAME = re.compile(rb"^[ \t]*mocapress-root[ \t]+(\S+)", re.MULTILINE)
+_LIMIT = re.compile(r"\(\s*([^\s(),]+)[\s,]+([^\s(),]+)\s*\)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,24 +60,24 @@ class _Parser:
     def __init__(self, data: bytes, file: str | None) -> None:
         self.file = file
         self.lines = iter(list(_lines(data)))
+        named = _ROOT_NAME.search(data)
+        self.root_name = named[1].decode("latin-1") if named else "root"
 
     def fail(self, line: int, what: str, expected: str, found: str | None = None) -> NoReturn:
         raise FormatError(what, file=self.file, line=line, expected=expected, found=found)
 
     def skeleton(self) -> Skeleton:
         units: dict[str, str] = {}
-        name, section, root_name = "", "", "root"
+        name, section = "", ""
         bones: list[_Bone] = []
         children: list[_Line] = []
         for line in self.lines:
             if line.key.startswith(":"):
                 section = line.key
                 if section == ":name":
-                    name = " ".join(line.words)
+                    name = _name(" ".join(line.words))
                 elif section == ":root":
                     bones.insert(0, _Bone("root", line.number))
-            elif section == ":documentation" and line.key == _ROOT_NAME and line.words:
-                root_name = line.words[0]
             elif section == ":units" and line.words:
                 units[line.key] = line.words[0]
             elif section == ":root":
@@ -94,7 +96,7 @@ class _Parser:
             length = float(units["length"]) if "length" in units else None
         except ValueError:
             self.fail(1, "unit of length", "a number", repr(units["length"]))
-        bones[0].name = root_name
+        bones[0].name = self.root_name
         joints = _joints(bones)
         return Skeleton(joints, "fixed", angle, length, name, {"mass": units.get("mass", "")})
 
@@ -156,7 +158,7 @@ class _Parser:
 
         linked = {0}
         for line in lines:
-            parents = find(line, line.text.split()[0])
+            parents = find(line, line.text.split(" ", 1)[0])
             parent = next((i for i in reversed(parents) if i in linked), parents[0])
             for word in line.words:
                 child = next((i for i in find(line, word) if i not in linked), None)
@@ -203,6 +205,10 @@ class _Parser:
             self.fail(line, "limits", "a number or inf", repr(word))
 
 
+def _name(text: str) -> str:
+    return decoded(text.encode("latin-1"))
+
+
 def _lines(data: bytes) -> Iterator[_Line]:
     for number, text in enumerate(data.split(b"\n"), 1):
         words = [word.decode("latin-1") for word in text.split(b"#", 1)[0].split()]
@@ -242,7 +248,7 @@ def _joints(bones: list[_Bone]) -> tuple[Joint, ...]:
         order.append(i)
     return tuple(
         Joint(
-            decoded(bone.name.encode("latin-1")),
+            _name(bone.name),
             -1 if i == 0 else place[bone.parent],
             bone.position if i == 0 else bones[bone.parent].vector,
             bone.channels,
@@ -270,7 +276,7 @@ def format_asf(skeleton: Skeleton) -> bytes:
         ":units",
         f"  mass 1.0\n  length {length!r}\n  angle {skeleton.angle_unit}",
         ":documentation\n   written by mocapress",
-        *([f"   {_ROOT_NAME} {escaped(root.name, ' #')}"] if root.name != "root" else []),
+        *([f"   mocapress-root {escaped(root.name, ' #')}"] if root.name != "root" else []),
         ":root",
         f"   order {' '.join(root.channels).upper()}",
         f"   axis {root.axis_order.upper()}",
@@ -318,3 +324,12 @@ def bone_vectors(skeleton: Skeleton) -> list[Vec3]:
 
 def _text(vector: Vec3) -> str:
     return " ".join(repr(float(x)) for x in vector)
+
+
+FORMAT = Format(
+    id="asf",
+    name="ASF",
+    suffixes=(".asf",),
+    recognises=lambda head: bool(_KEYWORD.search(head)),
+    read_skeleton=parse_asf,
+)
