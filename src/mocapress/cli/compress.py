@@ -77,7 +77,6 @@ def compress(
     from mocapress.cli.models import open_model
     from mocapress.cli.sizes import show_sizes, show_total
     from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
-    from mocapress.codecs.diffma import DiffMA
     from mocapress.container import diffma_json
     from mocapress.formats import formats, suffixes
 
@@ -109,7 +108,6 @@ def compress(
             facts["psnr"] = loss.psnr if loss else None
             facts["warning"] = compressed.warning
         else:
-            assert isinstance(made, DiffMA)
             blob = diffma_json.named(to, diffma_json.file_to_json(source, made, asf_path=asf))
         job.outputs[job.target] = blob
         return {
@@ -139,7 +137,7 @@ def _codec(
 
     from mocapress import codecs
     from mocapress.cli.batch import usage
-    from mocapress.codecs.diffma import DiffMA
+    from mocapress.codecs import Bound
     from mocapress.errors import ParameterError
 
     try:
@@ -149,10 +147,10 @@ def _codec(
         if learned is not None:
             codecs.learner(made, learned)
         if target_psnr is not None:
-            if not isinstance(made, DiffMA):
+            if Bound.MEAN not in made.can.bounds:
                 raise ParameterError("--target-psnr is for a lossy codec", expected="diffma")
-            made = replace(made, target_psnr=target_psnr)
-        if to is not Packed.MCZ and not isinstance(made, DiffMA):
+            made = replace(made, target_psnr=target_psnr)  # type: ignore[type-var]
+        if to is not Packed.MCZ and not made.can.document:
             raise ParameterError(f"{made.id} makes no {to}", expected="diffma")
     except ParameterError as error:
         usage(f"--codec: {error}")
