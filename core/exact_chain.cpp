@@ -7,79 +7,113 @@
 namespace mocapress::exact {
 namespace {
 
-constexpr double kTiny = 1e-13;    // keeps the gain of a variable that never moves finite
-constexpr std::size_t kShort = 8;  // not worth a call that chooses the instruction set
+constexpr double kTiny = 1e-13;        // keeps the gain of a variable that never moves finite
+constexpr std::size_t kTogether = 4;   // chains that learn side by side
 
-inline void add_scaled_any(double* __restrict to, const double* __restrict from, double factor,
-                           std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) to[i] += factor * from[i];
-}
+// One chain's part of a step.
+struct Rows {
+  Block* column;  // of the triangle
+  double* diagonal;
+  Block* rest;
+  double alpha;
+};
 
-inline void update_any(double* __restrict triangle, double* __restrict diagonal,
-                       double* __restrict rest, std::size_t count, double fading, double alpha) {
-  for (std::size_t j = 0; j < count; ++j) {
-    const double p = rest[j];
-    const double faded = fading * diagonal[j];
-    const double grown = faded + alpha * (p * p);
-    const double gain = alpha * p / (grown + kTiny);
-    alpha = alpha * (faded + kTiny) / (grown + kTiny);
-    diagonal[j] = grown;
-    const std::size_t below = count - j - 1;
-    double* __restrict later = rest + j + 1;
-    if (p != 0) {
-      for (std::size_t i = 0; i < below; ++i) {
-        const double left = later[i] - p * triangle[i];
-        later[i] = left;
-        triangle[i] += gain * left;
+// kCount chains of equal size: while one waits for its division, the others go on.
+template <std::size_t kCount>
+inline void update_any(Rows* chains, std::size_t size, double fading) {
+  const std::size_t blocks = blocks_of(size);
+  for (std::size_t j = 0; j < size; ++j) {
+    const std::size_t first = j / kLanes;
+    for (std::size_t k = 0; k < kCount; ++k) {
+      Rows& chain = chains[k];
+      const double p = chain.rest[first][j % kLanes];
+      const double faded = fading * chain.diagonal[j];
+      const double grown = faded + chain.alpha * (p * p);
+      const double gain = chain.alpha * p / (grown + kTiny);
+      chain.alpha = chain.alpha * (faded + kTiny) / (grown + kTiny);
+      chain.diagonal[j] = grown;
+      chain.rest[first][j % kLanes] = 0;  // so that nothing is added up to row j
+      for (std::size_t b = first; b < blocks; ++b) {
+        const Block left = chain.rest[b] - p * *chain.column;
+        chain.rest[b] = left;
+        *chain.column++ += gain * left;
       }
     }
-    triangle += below;
   }
 }
 
 MOCAPRESS_VECTOR_CLONES
-void add_scaled(double* to, const double* from, double factor, std::size_t count) {
-  add_scaled_any(to, from, factor, count);
+void see_run(Block* predictions, const Block* columns, std::size_t first, const double* values,
+             double* seen, std::size_t count, std::size_t blocks) {
+  for (std::size_t j = first; j < first + count; ++j, ++values) {
+    seen[j] = *values;
+    const std::size_t begin = j / kLanes;
+    const double innovation = *values - predictions[begin][j % kLanes];
+    for (std::size_t b = begin; b < blocks; ++b) predictions[b] += innovation * *columns++;
+  }
 }
 
 MOCAPRESS_VECTOR_CLONES
-void update(double* triangle, double* diagonal, double* rest, std::size_t count, double fading,
-            double alpha) {
-  update_any(triangle, diagonal, rest, count, fading, alpha);
+void update_one(Rows* chains, std::size_t size, double fading) {
+  update_any<1>(chains, size, fading);
+}
+
+MOCAPRESS_VECTOR_CLONES
+void update_four(Rows* chains, std::size_t size, double fading) {
+  update_any<kTogether>(chains, size, fading);
 }
 
 }  // namespace
 
 Chain::Chain(std::size_t count, double fading, double ridge)
-    : fading_(fading),
+    : size_(count),
+      fading_(fading),
       diagonal_(count, ridge),
       offsets_(count),
-      predictions_(count),
-      values_(count),
-      rest_(count) {
+      predictions_(count, 0),
+      values_(count, 0),
+      rest_(count, 0) {
   std::size_t size = 0;
   for (std::size_t j = 0; j < count; ++j) {
     offsets_[j] = size;
-    size += count - j - 1;
+    size += blocks_of(count) - j / kLanes;
   }
-  triangle_.assign(size, 0);
+  triangle_.resize(size);
 }
 
-void Chain::begin() { std::fill(predictions_.begin(), predictions_.end(), 0.0); }
+void Chain::begin() {
+  std::fill_n(predictions_.blocks(), blocks_of(size_), Block{});
+}
 
-void Chain::see(std::size_t variable, double value) {
-  values_[variable] = value;
-  const double innovation = value - predictions_[variable];
-  if (innovation == 0) return;
-  const std::size_t later = size() - variable - 1;
-  (later < kShort ? add_scaled_any : add_scaled)(predictions_.data() + variable + 1,
-                                                 column(variable), innovation, later);
+void Chain::see(std::size_t first, std::span<const double> values) {
+  if (values.empty()) return;
+  see_run(predictions_.blocks(), column_blocks(first), first, values.data(), values_.data(),
+          values.size(), blocks_of(size_));
 }
 
 void Chain::learn(double weight) {
-  rest_ = values_;
-  (size() <= kShort ? update_any : update)(triangle_.data(), diagonal_.data(), rest_.data(), size(),
-                                           fading_, weight);
+  Chain* const self = this;
+  learn_all(std::span(&self, 1), std::span(&weight, 1));
+}
+
+void Chain::learn_all(std::span<Chain* const> chains, std::span<const double> weights) {
+  const auto alike = [&](std::size_t i, std::size_t j) {
+    return chains[i]->size_ == chains[j]->size_ && chains[i]->fading_ == chains[j]->fading_;
+  };
+  for (std::size_t i = 0; i < chains.size();) {
+    std::size_t count = 1;
+    while (count < kTogether && i + count < chains.size() && alike(i, i + count)) ++count;
+    if (count < kTogether) count = 1;
+    Rows rows[kTogether];
+    for (std::size_t k = 0; k < count; ++k) {
+      Chain& chain = *chains[i + k];
+      std::copy_n(chain.values_.blocks(), blocks_of(chain.size_), chain.rest_.blocks());
+      rows[k] = {chain.triangle_.data(), chain.diagonal_.data(), chain.rest_.blocks(),
+                 weights[i + k]};
+    }
+    (count == 1 ? update_one : update_four)(rows, chains[i]->size_, chains[i]->fading_);
+    i += count;
+  }
 }
 
 }  // namespace mocapress::exact
