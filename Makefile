@@ -6,18 +6,21 @@ BIN := $(VENV)/bin
 CORPUS_SOURCE := ../shared/data
 SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined -fno-sanitize-recover=all -Icore
 FUZZ_RUNS ?= 100000
+sources := $(wildcard core/*/*.cpp core/*/*.hpp)
+headers := $(filter %.hpp,$(sources))
+kernels := $(filter-out core/python/% core/check/% core/fuzz/%,$(filter %.cpp,$(sources)))
 
 .PHONY: demo test check tests test-js browser sanitize fuzz bench wheel clean
 
-demo: $(VENV)/.built
-	@$(BIN)/mocapress bench demo
+demo: $(VENV)/.installed
+	@PYTHONPATH=benchmarks $(BIN)/python -m mocapress_bench demo
 
 test: check sanitize test-js tests
 
 check: $(VENV)/.built
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
-	$(BIN)/clang-format --dry-run --Werror core/*.cpp core/*.hpp core/*/*.cpp core/*/*.hpp
+	$(BIN)/clang-format --dry-run --Werror $(sources)
 	$(BIN)/mypy
 
 tests: $(VENV)/.built corpus browser
@@ -25,21 +28,24 @@ tests: $(VENV)/.built corpus browser
 	    $(BIN)/pytest
 
 # The decoders under AddressSanitizer and UBSan, on seeds and deterministic mutations of them.
-fuzzers := $(patsubst core/fuzz/fuzz_%.cpp,build/fuzz/%,$(wildcard core/fuzz/fuzz_*.cpp))
-kernels := $(filter-out core/bind%,$(wildcard core/*.cpp))
+fuzz_targets := $(filter-out core/fuzz/driver.cpp,$(wildcard core/fuzz/*.cpp))
+fuzzers := $(patsubst core/fuzz/%.cpp,build/fuzz/%,$(fuzz_targets))
 
 sanitize: $(fuzzers) $(VENV)/.built
-	$(BIN)/python core/fuzz/fuzz_container.py -runs=$$(($(FUZZ_RUNS) / 10))
+	$(BIN)/python core/fuzz/container.py -runs=$$(($(FUZZ_RUNS) / 10))
 	@for target in $(fuzzers); do echo $$target; \
 	    $$target $$(ls -d core/fuzz/seeds/$$(basename $$target)/* 2>/dev/null) -runs=$(FUZZ_RUNS) \
 	    || exit 1; done
 
-build/fuzz/%: core/fuzz/fuzz_%.cpp core/fuzz/driver.cpp $(kernels) $(wildcard core/*.hpp core/fuzz/*.hpp)
-	@mkdir -p build/fuzz
-	$(CXX) $(SANITIZE) $< core/fuzz/driver.cpp $(kernels) -o $@
+$(fuzzers): build/fuzz/%: build/fuzz/core/fuzz/%.o build/fuzz/core/fuzz/driver.o $(kernels:%.cpp=build/fuzz/%.o)
+	$(CXX) $(SANITIZE) $^ -o $@
+
+build/fuzz/%.o: %.cpp $(headers)
+	@mkdir -p $(@D)
+	$(CXX) $(SANITIZE) -c $< -o $@
 
 test-js: browser
-	@if command -v node >/dev/null; then node --test viewer/diffma/test/*.test.js viewer/test/*.test.js; \
+	@if command -v node >/dev/null; then node --test tests/viewer/*.test.mjs; \
 	    else test -z "$$CI"; fi
 
 # What the page's tests run in. Where it is not there and cannot be installed, they are skipped and
@@ -67,10 +73,10 @@ check_aarch64 := aarch64-linux-gnu-g++ -O3 -static $(EXACT) $(ONE)
 # Not allowed; that it prints something else shows that the check sees it.
 check_contracted := $(CXX) -O3 -mavx2 -mfma $(EXACT) $(ONE) -ffp-contract=fast
 
-build/check/%: $(wildcard core/check/*) $(kernels) $(wildcard core/*.hpp)
+build/check/%: $(wildcard core/check/*) $(kernels) $(headers)
 	@mkdir -p $(@D)
-	$(check_$(*D)) core/check/check_$(*F).cpp $(wildcard core/$(*F).cpp core/$(*F)_*.cpp) \
-	    $(wildcard core/snap.cpp core/number_line.cpp) -o $@
+	$(check_$(*D)) core/check/$(*F).cpp $(wildcard core/$(*F)/*.cpp core/$(*F)_*/*.cpp) \
+	    core/numbers/snap.cpp core/numbers/line.cpp -o $@
 
 bench: $(VENV)/.built corpus
 	$(BIN)/mocapress bench lossless $(if $(wildcard corpus/.version),corpus/amc/cmu)
@@ -83,12 +89,17 @@ wheel: $(VENV)/.built
 corpus:
 	@if [ -x $(CORPUS_SOURCE)/unpack ]; then $(PYTHON) $(CORPUS_SOURCE)/unpack corpus; fi
 
-$(VENV)/.built: pyproject.toml CMakeLists.txt $(wildcard core/*.cpp core/*.hpp)
+# For developers: the tools, and the package of benchmarks with the rivals that PyPI has.
+$(VENV)/.built: $(VENV)/.installed benchmarks/pyproject.toml
+	$(BIN)/pip install --quiet --disable-pip-version-check 'mocapress[dev]' --editable ./benchmarks
+	@touch $@
+
+$(VENV)/.installed: pyproject.toml CMakeLists.txt $(kernels) $(headers) $(wildcard core/python/*.cpp)
 	@command -v $(PYTHON) >/dev/null || { echo "mocapress needs Python 3.11 to 3.13 (Debian: apt-get install python3-venv)"; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "mocapress needs Python 3.11 or later; PYTHON=... names one"; exit 1; }
 	@command -v $(CXX) >/dev/null || { echo "mocapress needs a C++20 compiler: g++ 12 or clang 15 (Debian: apt-get install g++)"; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	CXX=$(CXX) $(BIN)/pip install --quiet --disable-pip-version-check --editable '.[bench,dev]'
+	CXX=$(CXX) $(BIN)/pip install --quiet --disable-pip-version-check --editable .
 	@touch $@
 
 clean:

@@ -19,19 +19,19 @@ from numpy.typing import NDArray
 
 import mocapress
 from mocapress import api
-from mocapress.bench.tables import markdown
 from mocapress.codecs.exact import Exact, codec
 from mocapress.codecs.exact.roles import Role, Roles, _exponents, _turns
 from mocapress.container import Kind, parse
 from mocapress.formats.files import find_asf
 from mocapress.motion import Clip, Column
+from mocapress_bench.tables import markdown
 
 Array = NDArray[np.float64]
 Change = Callable[[Roles, Array], Roles]
 FIRST, EVERY, STRONGEST = 2, 12, 9
 CHUNKS = (512, 1024, 2048, 4096, WHOLE := 1 << 20)
 TIMES = ("find roles µs/frame", "encode µs/frame", "decode µs/frame")
-FLOAT64 = (0, 0)  # of core/number_line.hpp
+FLOAT64 = (0, 0)  # of core/numbers/line.hpp
 find_roles = codec._roles
 
 

@@ -1,6 +1,6 @@
-"""Learns what `exact` begins with, where no model is given, and writes core/exact_start_tables.hpp.
+"""Learns what `exact` begins with, where no model is given, and writes core/exact/start_tables.hpp.
 
-    python benchmarks/exact_start.py CORPUS/amc/cmu [core/exact_start_tables.hpp]
+    python benchmarks/exact_start.py CORPUS/amc/cmu [core/exact/start_tables.hpp]
 
 Every other folder of AMC clips is learned from, coded one behind the other as if they were one: the
 shape of the distribution, and the numbers of columns of rounding noise. The rest of the clips tells
@@ -51,4 +51,4 @@ def main(corpus: Path, target: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(*sys.argv[2:3] or ["core/exact_start_tables.hpp"]))
+    main(Path(sys.argv[1]), Path(*sys.argv[2:3] or ["core/exact/start_tables.hpp"]))

@@ -1,6 +1,6 @@
-"""Learn what core/exact_kinematics.cpp knows of the skeleton of CMU clips, and say how it helps.
+"""Learn what core/exact/kinematics.cpp knows of the skeleton of CMU clips, and say how it helps.
 
-    python benchmarks/kinematic_weights.py corpus/amc/cmu --write core/exact_kinematics_tables.hpp
+    python benchmarks/kinematic_weights.py corpus/amc/cmu --write core/exact/kinematics_tables.hpp
     python benchmarks/kinematic_weights.py corpus/amc/cmu --measure
 
 docs/exact_kinematics.md explains the model. Geometry is the mean of the skeletons, weights are
@@ -267,7 +267,7 @@ def report(
 
 
 def tables(text: str, bones: Sequence[Bone], weights: Weights) -> str:
-    """Give core/exact_kinematics_tables.hpp with other numbers."""
+    """Give core/exact/kinematics_tables.hpp with other numbers."""
 
     def braced(numbers: Sequence[float]) -> str:
         return "{" + ", ".join(f"{number:.4g}" for number in numbers) + "}"

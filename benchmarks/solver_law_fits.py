@@ -1,4 +1,4 @@
-"""Fits of the laws of core/exact_law.cpp, which docs/exact_laws.md explains.
+"""Fits of the laws of core/exact/law.cpp, which docs/exact_laws.md explains.
 
 `y` axes are numbered from the parent of a chain, y0, to its last joint, y3.
 """

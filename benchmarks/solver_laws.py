@@ -1,6 +1,6 @@
-"""Fit the laws of core/exact_law.cpp on a folder of CMU clips, and say how far they reach.
+"""Fit the laws of core/exact/law.cpp on a folder of CMU clips, and say how far they reach.
 
-    python benchmarks/solver_laws.py corpus/amc/cmu --write core/exact_law_tables.hpp
+    python benchmarks/solver_laws.py corpus/amc/cmu --write core/exact/law_tables.hpp
 
 The laws are explained in docs/exact_laws.md. Subjects that are left out of the fits are what the
 printed tables are about. The same clips give the same numbers: nothing is drawn by chance.
@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+
+import mocapress
 from solver_law_fits import (
     HOLDS,
     Array,
@@ -29,8 +31,6 @@ from solver_law_fits import (
     twists,
     y_errors,
 )
-
-import mocapress
 
 CHAINS = {
     "spine": ("lowerback", "upperback", "thorax"),
@@ -113,10 +113,10 @@ def array(name: str, values: Array, comment: str) -> str:
 
 
 def header(laws: dict[str, list[Branch]], twist: dict[str, Array], middle: dict[str, Array]) -> str:
-    """Write core/exact_law_tables.hpp."""
+    """Write core/exact/law_tables.hpp."""
     parts = [
         (
-            "// The numbers of the laws in exact_law.cpp, written by benchmarks/solver_laws.py.\n"
+            "// The numbers of the laws in law.cpp, written by benchmarks/solver_laws.py.\n"
             "// clang-format off\n#pragma once\n\n#include <array>\n\n"
             "namespace mocapress::exact {\n\n"
             "// A branch of the y law: polynomials of degree 4 in three bends.\n"

@@ -19,7 +19,7 @@ ROWS = [
     {"models"},
     {"restore"},
     {"api"},
-    {"describe", "bench", "viewer"},
+    {"describe", "viewer"},
     {"cli"},
 ]
 HEIGHT = {box: row for row, boxes in enumerate(ROWS) for box in boxes}

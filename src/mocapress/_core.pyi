@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 # Row templates are (counter, literals, columns, widths); formats are (C, 6) uint8: kind, digits,
-# exponent_digits, point_zero, bare_point, upper; see core/rows.hpp and core/number_text.hpp.
+# exponent_digits, point_zero, bare_point, upper; see core/formats/rows.hpp, core/numbers/text.hpp.
 _Template = tuple[bool, list[bytes], list[int], list[int]]
 
 def parse_rows(
@@ -40,7 +40,7 @@ def print_rows(
     most_bytes: int,
 ) -> bytes: ...
 
-# A plan is (C, 4) int32: parent column or -1, precision, grid, digits; see core/app.hpp.
+# A plan is (C, 4) int32: parent column or -1, precision, grid, digits; see core/app/codec.hpp.
 
 def app_precisions(values: NDArray[np.float64], plan: NDArray[np.int32]) -> list[int]: ...
 def app_encode(
@@ -72,7 +72,7 @@ def encode_differences(differences: NDArray[np.int64]) -> bytes: ...
 def decode_differences(coded: bytes, differences: NDArray[np.int64]) -> None: ...
 
 # A plan is (C, 6) int32: line, digits, noise, exponent, turns, place; couplings are kind,
-# sources, targets, parameters; see core/exact.hpp and core/number_line.hpp.
+# sources, targets, parameters; see core/exact/codec.hpp and core/numbers/line.hpp.
 
 def exact_lines(values: NDArray[np.float64]) -> list[tuple[int, int]]: ...
 def exact_law(kind: int, columns: NDArray[np.float64]) -> NDArray[np.float64]: ...
@@ -94,7 +94,7 @@ def exact_decode(
     start: tuple[list[float], list[list[float]]],
 ) -> None: ...
 
-# One channel of DiffMA; see core/diffma.hpp.
+# One channel of DiffMA; see core/diffma/codec.hpp.
 
 def diffma_encode(
     values: NDArray[np.float64],

@@ -9,9 +9,9 @@ import pytest
 from typer.testing import CliRunner
 
 import mocapress as mp
-from mocapress.bench import diffma, diffma_tables
 from mocapress.cli.app import app
 from mocapress.codecs.diffma.allocation import psnr
+from mocapress_bench import diffma, diffma_tables
 
 
 def test_the_command_prints_and_writes_the_tables(

@@ -8,10 +8,11 @@ from learner import Learner
 from typer.testing import CliRunner
 
 import mocapress as mp
-from mocapress.bench import learning, lossless, tables
-from mocapress.bench.contenders import contenders
 from mocapress.cli.app import app
 from mocapress.models import model_bytes
+from mocapress_bench import learning, lossless, tables
+from mocapress_bench.contenders import contenders
+from mocapress_bench.inputs import clips_in
 
 pytestmark = pytest.mark.usefixtures("learner")
 BVH = (
@@ -27,7 +28,7 @@ def clips(tmp_path: Path) -> list[Path]:
         file = tmp_path / f"{name}.bvh"
         file.parent.mkdir(exist_ok=True)
         file.write_text(BVH % (4, f"{value}\n" * 4))
-    return lossless.clips_in(tmp_path)
+    return clips_in(tmp_path)
 
 
 def test_no_model_has_seen_the_clips_of_its_folder(clips: list[Path]) -> None:

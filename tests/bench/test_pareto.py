@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from mocapress.bench import pareto
-from mocapress.bench.pareto import Box, Point
+from mocapress_bench import pareto
+from mocapress_bench.pareto import Box, Point
 
 
 def row(codec: str, small: int, seconds: float, **more: Any) -> dict[str, Any]:

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
-from mocapress.bench import rivals
-from mocapress.bench.rivals import Rival
+from mocapress_bench import rivals
+from mocapress_bench.rivals import Rival
 
 MAKERS: dict[str, Callable[[], Rival]] = {
     "pcodec float64": partial(rivals.pcodec, grid=False),

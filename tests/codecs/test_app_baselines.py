@@ -6,10 +6,10 @@ from hypothesis import given
 from test_app import SIX_DIGITS, assert_same_bits, formats, make_clip, matrices, walk
 
 import mocapress.codecs
-from mocapress.bench.baselines import Parallelogram, PreviousFrame
-from mocapress.bench.dct import Dct, _basis
 from mocapress.codecs import Codec
 from mocapress.motion import Clip, NumberFormat
+from mocapress_bench.baselines import Parallelogram, PreviousFrame
+from mocapress_bench.dct import Dct, _basis
 
 BASELINES: list[Codec] = [Parallelogram(), PreviousFrame(), Dct()]
 

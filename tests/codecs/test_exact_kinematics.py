@@ -29,10 +29,10 @@ def numbers(text: str, name: str) -> Array:
 
 
 class Table:
-    """The bones of core/exact_kinematics_tables.hpp."""
+    """The bones of core/exact/kinematics_tables.hpp."""
 
     def __init__(self) -> None:
-        text = (ROOT / "core/exact_kinematics_tables.hpp").read_text()
+        text = (ROOT / "core/exact/kinematics_tables.hpp").read_text()
         self.bones = numbers(text, "kSkeletonBone").reshape(-1, 18)
         self.resistances = numbers(text, "kSkeletonChannel").reshape(-1, 3)[:, 2]
         self.columns = sorted(

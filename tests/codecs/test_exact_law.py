@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 import mocapress
 from mocapress import _core
-from mocapress.codecs.exact.roles import CouplingKind
+from mocapress.codecs.exact.coupling import CouplingKind
 
 Array = NDArray[np.float64]
 
 ROOT = Path(__file__).parents[2]
-TABLES = (ROOT / "core/exact_law_tables.hpp").read_text()
+TABLES = (ROOT / "core/exact/law_tables.hpp").read_text()
 CLIP = mocapress.read(ROOT / "samples/cmu_01_01.amc")
 JOINTS = {
     CouplingKind.SPINE: ("lowerback", "upperback", "thorax"),

@@ -15,8 +15,9 @@ import mocapress as mp
 from mocapress import _core
 from mocapress.codecs import Encoded
 from mocapress.codecs.exact import Exact
-from mocapress.codecs.exact.couplings import find_couplings
-from mocapress.codecs.exact.roles import Coupling, CouplingKind, Role, Roles, find_roles
+from mocapress.codecs.exact.coupling import Coupling, CouplingKind
+from mocapress.codecs.exact.coupling_search import find_couplings
+from mocapress.codecs.exact.roles import Role, Roles, find_roles
 from mocapress.errors import CorruptError
 from mocapress.motion import Clip, Column
 

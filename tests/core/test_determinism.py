@@ -1,6 +1,6 @@
 """A codec's kernels give the same bytes whatever compiler, optimiser or processor they run on.
 
-The check programs, core/check/check_CODEC.cpp, code made-up motion, decode it and print digests.
+The check programs, core/check/CODEC.cpp, code made-up motion, decode it and print digests.
 Built as the package is, what they print is in tests/golden/; built otherwise, they must print that.
 """
 
@@ -14,9 +14,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 GOLDEN = ROOT / "tests/golden"
-CODECS = sorted(
-    path.stem.removeprefix("check_") for path in (ROOT / "core/check").glob("check_*.cpp")
-)
+CODECS = sorted(path.stem for path in (ROOT / "core/check").glob("*.cpp"))
 
 
 class Way(NamedTuple):

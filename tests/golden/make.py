@@ -112,8 +112,7 @@ if __name__ == "__main__":
         put(name, partial(mp.decompress, HERE / f"{name}.diffma.json"))
     learned = mp.Model("learner", bytes(range(100)) * 2)
     put("v1_learner.mcm", partial(model_bytes, learned))
-    for program in sorted(HERE.parents[1].glob("core/check/check_*.cpp")):
-        codec = program.stem.removeprefix("check_")
-        put(f"kernels_{codec}.txt", partial(kernels, codec))
+    for program in sorted(HERE.parents[1].glob("core/check/*.cpp")):
+        put(f"kernels_{program.stem}.txt", partial(kernels, program.stem))
     for spec in payloads.specs():
         put(payloads.golden(spec).name, partial(payloads.digests, spec))

@@ -96,7 +96,9 @@ def test_the_policy_names_every_script_and_style_of_the_page() -> None:
 def test_every_module_is_in_the_page_after_those_that_it_imports() -> None:
     (packed,) = re.findall(r'id="modules">(.*?)</script>', page.document([]))
     modules = json.loads(gzip.decompress(base64.b64decode(packed)))
-    sources = {f"page/{path.name}" for path in (page.SOURCES / "page").glob("*.js")}
+    sources = {
+        path.relative_to(page.SOURCES).as_posix() for path in (page.SOURCES / "page").rglob("*.js")
+    }
     assert sources - {"page/start.js"} <= {path for path, _ in modules}
     before: set[str] = set()
     for path, text in modules:
@@ -105,6 +107,18 @@ def test_every_module_is_in_the_page_after_those_that_it_imports() -> None:
         for name in re.findall(statements, text, re.MULTILINE):
             assert name.startswith("module:"), path
         before.add(path)
+
+
+ROOMS = {"reading": set(), "state": {"reading"}, "panels": {"state"}, "scene": {"state"}}
+
+
+def test_the_rooms_of_the_page_import_only_from_below() -> None:
+    for room, below in ROOMS.items():
+        for path in (page.SOURCES / "page" / room).glob("*.js"):
+            code = re.sub(r"/\*.*?\*/", "", path.read_text(), flags=re.DOTALL)
+            named = set(re.findall(r'from "\.\./(\w+)/', code))
+            assert named <= below, path
+            assert room == "scene" or 'from "three' not in code, path
 
 
 def test_motion_cannot_leave_its_element() -> None:

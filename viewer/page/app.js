@@ -1,19 +1,20 @@
-import { axisName } from "./bearings.js";
-import { speeds } from "./comparison.js";
-import { acceptFiles } from "./dropping.js";
-import { element } from "./element.js";
-import { embeddedClips } from "./embedded.js";
-import { Inspector } from "./inspector.js";
-import { listenToKeys } from "./keyboard.js";
-import { labelCells, legend, showKeys } from "./labels.js";
-import { lengthText } from "./lengths.js";
-import { Lineup } from "./lineup.js";
-import { Notices } from "./notice.js";
-import { Player } from "./player.js";
-import { message, readFiles } from "./reading.js";
-import { Take } from "./take.js";
-import { Timeline } from "./timeline.js";
-import { Viewport } from "./viewport.js";
+import { acceptFiles } from "./panels/dropping.js";
+import { element } from "./panels/element.js";
+import { Inspector } from "./panels/inspector.js";
+import { listenToKeys } from "./panels/keyboard.js";
+import { labelCells, legend, showKeys } from "./panels/labels.js";
+import { lengthText } from "./panels/lengths.js";
+import { Notices } from "./panels/notice.js";
+import { Timeline } from "./panels/timeline.js";
+import { embeddedClips } from "./reading/embedded.js";
+import { message, readFiles } from "./reading/files.js";
+import { paint, stagesOf } from "./scene/staging.js";
+import { Viewport } from "./scene/viewport.js";
+import { axisName } from "./state/bearings.js";
+import { speeds } from "./state/comparison.js";
+import { Lineup } from "./state/lineup.js";
+import { Player } from "./state/player.js";
+import { Take } from "./state/take.js";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
 const MOST_CLIPS = 16;
@@ -54,7 +55,7 @@ export class App {
     for (const clip of clips) {
       try {
         takes.push(new Take(clip));
-        if (clip.note) errors.push(`${clip.name}: ${clip.note}`);
+        for (const note of clip.notes ?? []) errors.push(`${clip.name}: ${note}`);
       } catch (error) {
         errors.push(message(error, clip.name));
       }
@@ -77,7 +78,7 @@ export class App {
   /** Build the stages anew: after clips, the way of comparing or the up axis have changed. */
   #arrange() {
     const { lineup, viewport } = this;
-    viewport.show(lineup.stages());
+    viewport.show(stagesOf(lineup));
     const compared = lineup.comparison !== null;
     document.body.classList.toggle("compared", compared);
     this.at("mode").textContent = lineup.isOverlaid ? "Side by side" : "Overlay";
@@ -110,7 +111,7 @@ export class App {
   /** Show the player's moment everywhere. */
   #changed() {
     const { player, lineup, viewport } = this;
-    lineup.paint(viewport.stages, player.time, this.inspector.chosen, viewport.mark);
+    paint(lineup, viewport.stages, player.time, this.inspector.chosen, viewport.mark);
     for (const stage of viewport.stages) stage.show(player.time, viewport.follows);
     viewport.dirty = true;
     const { frame, frames, frameTime, time } = player;
@@ -167,7 +168,7 @@ export class App {
     this.#pickJoints();
   }
 
-  /** @returns {import("./keyboard.js").Binding[]} */
+  /** @returns {import("./panels/keyboard.js").Binding[]} */
   #bindings() {
     const { player } = this;
     const second = () => Math.round(1 / player.frameTime);

@@ -1,5 +1,5 @@
 import { App } from "./app.js";
-import { Notices } from "./notice.js";
+import { Notices } from "./panels/notice.js";
 
 let app;
 try {

@@ -6,16 +6,16 @@ from typing import Annotated
 
 import typer
 
+from mocapress.cli.installed import Commands
 from mocapress.version import __version__
 
 app = typer.Typer(
+    cls=Commands,
     help="Store, play and search motion capture: AMC, ASF and BVH, restored byte for byte.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-bench_app = typer.Typer(help="Measure codecs on clips.", no_args_is_help=True)
-app.add_typer(bench_app, name="bench")
 
 Inputs = Annotated[
     list[Path], typer.Argument(help="Files or folders; - is stdin.", show_default=False)
@@ -40,6 +40,10 @@ Models = Annotated[
         metavar="PATH",
         show_default=False,
     ),
+]
+Lenient = Annotated[
+    bool,
+    typer.Option("--lenient", help="Read what is left of files that have lost frames."),
 ]
 Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks.", hidden=True)]
 
@@ -181,6 +185,7 @@ def info(
     inputs: Inputs,
     asf: Asf = None,
     models: Models = None,
+    lenient: Lenient = False,
     jobs: Jobs = 1,
     json: Json = False,
     debug: Debug = False,
@@ -188,7 +193,7 @@ def info(
     """Say what is in motion files, compressed files and models."""
     from mocapress.cli.info import show_info
 
-    show_info(inputs, asf=asf, models=models or [], jobs=jobs, json=json)
+    show_info(inputs, asf=asf, models=models or [], strict=not lenient, jobs=jobs, json=json)
 
 
 class Target(StrEnum):
@@ -211,6 +216,7 @@ def convert(
         float | None,
         typer.Option("--fps", help="Frames per second of an AMC, which does not say.", min=1e-3),
     ] = None,
+    lenient: Lenient = False,
     jobs: Jobs = 1,
     force: Force = False,
     json: Json = False,
@@ -226,6 +232,7 @@ def convert(
         asf=asf,
         models=models or [],
         fps=fps,
+        strict=not lenient,
         jobs=jobs,
         force=force,
         json=json,
@@ -256,6 +263,7 @@ def view(
     browser: Annotated[
         bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
     ] = True,
+    lenient: Lenient = False,
     force: Force = False,
     debug: Debug = False,
 ) -> None:
@@ -270,89 +278,6 @@ def view(
         asf=asf,
         port=port,
         browser=browser,
+        strict=not lenient,
         force=force,
     )
-
-
-@bench_app.command("lossless")
-def bench_lossless(
-    corpus: Annotated[
-        Path | None, typer.Argument(help="Folder of clips; else the samples of a checkout.")
-    ] = None,
-    json: Annotated[
-        Path | None, typer.Option("--json", help="Write all rows to this file.", metavar="FILE")
-    ] = None,
-    markdown: Annotated[
-        Path | None, typer.Option("--markdown", help="Write the tables here.", metavar="FILE")
-    ] = None,
-    plots: Annotated[
-        Path | None, typer.Option("--plots", help="Draw the figures here.", metavar="FOLDER")
-    ] = None,
-    only: Annotated[
-        str,
-        typer.Option("--only", help="Codecs, e.g. app:t=10, and tools; commas between."),
-    ] = "",
-    folds: Annotated[
-        int | None,
-        typer.Option(
-            "--folds",
-            min=2,
-            help="Measure codecs that learn with models, too: folders are dealt to N folds, each "
-            "coded with a model of the others.",
-            metavar="N",
-        ),
-    ] = None,
-    train_frames: Annotated[
-        int, typer.Option("--train-frames", min=1, help="Frames that each such model learns from.")
-    ] = 40_000,
-    model: Annotated[
-        Path | None,
-        typer.Option("--model", help="Measure with this model, too.", metavar="FILE.mcm"),
-    ] = None,
-    repeat: Annotated[int, typer.Option("--repeat", min=1, help="Take the best of N times.")] = 1,
-    force: Force = False,
-    debug: Debug = False,
-) -> None:
-    """Compare every lossless codec with each other and with general-purpose tools."""
-    from mocapress.cli.bench import bench_lossless_files
-
-    bench_lossless_files(
-        corpus,
-        json=json,
-        markdown=markdown,
-        plots=plots,
-        only=only,
-        folds=folds,
-        model=model,
-        train_frames=train_frames,
-        repeat=repeat,
-        force=force,
-    )
-
-
-@bench_app.command("diffma")
-def bench_diffma(
-    corpus: Annotated[
-        Path | None, typer.Argument(help="Folder of clips; else the samples of a checkout.")
-    ] = None,
-    json: Annotated[
-        Path | None, typer.Option("--json", help="Write all rows to this file.", metavar="FILE")
-    ] = None,
-    markdown: Annotated[
-        Path | None, typer.Option("--markdown", help="Write the tables here.", metavar="FILE")
-    ] = None,
-    force: Force = False,
-    debug: Debug = False,
-) -> None:
-    """Repeat the evaluation of DiffMA, beside zfp and LZMA, and measure what goes past it."""
-    from mocapress.cli.bench_diffma import bench_diffma_files
-
-    bench_diffma_files(corpus, json=json, markdown=markdown, force=force)
-
-
-@bench_app.command("demo")
-def bench_demo(debug: Debug = False) -> None:
-    """Compress and restore the samples of a checkout with every codec."""
-    from mocapress.cli.bench import demo_files
-
-    demo_files()

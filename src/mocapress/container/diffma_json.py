@@ -10,6 +10,7 @@ from mocapress import codecs
 from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.diffma.codec import by_channel
 from mocapress.codecs.diffma.document import Document, Level, read_document
+from mocapress.codecs.fallback import naming_faults
 from mocapress.container import Kind, pack, unpack
 from mocapress.errors import (
     CorruptError,
@@ -21,6 +22,7 @@ from mocapress.errors import (
 from mocapress.formats import asf
 from mocapress.formats.files import columns_of, find_asf, sniff, split
 from mocapress.formats.layout import Layout
+from mocapress.formats.problems import report
 from mocapress.motion import Clip, Column, Skeleton
 from mocapress.motion.clip import decimal_seconds
 from mocapress.records import Reader, Writer
@@ -118,9 +120,8 @@ def file_to_json(
     kind = sniff(data, name)
     if kind not in ("amc", "bvh"):
         raise FormatError("not a motion file", file=name or None, expected="AMC or BVH")
-    clip, layout, error = split(data, kind, skeleton=skeleton, file=name or None)
-    if error:
-        raise error
+    clip, layout, problems = split(data, kind, skeleton=skeleton, file=name or None)
+    report(problems, name or None)
     writer = Writer()
     writer.integer(Kind[kind.upper()])
     writer.integer(clip.frames)
@@ -135,10 +136,15 @@ def clip_to_json(clip: Clip, codec: DiffMA, *, layout: bytes = b"") -> bytes:
     UnsupportedError
         When a value is no finite number, which JSON cannot hold.
     VerificationError
-        When what was decoded is not what was encoded.
+        When the codec fails, or what was decoded is not what was encoded.
 
     """
     _refuse_not_finite(clip)
+    with naming_faults(codec):
+        return _checked_json(clip, codec, layout)
+
+
+def _checked_json(clip: Clip, codec: DiffMA, layout: bytes) -> bytes:
     plans, coding, channels = codec.plan(clip), codec.coding, by_channel(clip.values)
     levels = []
     for bound in codec.level_bounds:

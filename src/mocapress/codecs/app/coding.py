@@ -21,7 +21,7 @@ _GRIDS = {
     NumberKind.TRIMMED: (2, 0),
     NumberKind.SHORTEST32: (3, 0),
 }
-"""Grid of core/snap.hpp, and how many digits it has more than the format says."""
+"""Grid of core/numbers/snap.hpp, and how many digits it has more than the format says."""
 
 
 @dataclass(frozen=True, slots=True)

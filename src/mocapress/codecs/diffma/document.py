@@ -27,7 +27,7 @@ from mocapress.codecs.diffma.skeleton_json import ColumnPlace, read_skeleton, sk
 from mocapress.motion import Skeleton
 
 _LIST = {"separators": (",", ":")}
-_ALPHABET, _OPCODE = 1, 2  # core/diffma.hpp, Fault
+_ALPHABET, _OPCODE = 1, 2  # core/diffma/codec.hpp, Fault
 
 
 @dataclass(frozen=True, slots=True)

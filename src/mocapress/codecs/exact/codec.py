@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
-from mocapress.codecs.contract import Chunk, Encoded, Model
-from mocapress.codecs.exact.couplings import find_couplings
+from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
+from mocapress.codecs.exact.coupling_search import find_couplings
 from mocapress.codecs.exact.roles import Role, Roles, find_roles, read_roles, write_roles
 from mocapress.codecs.exact.skeletons import is_known
 from mocapress.codecs.exact.start import Learned, Start, model_of, start_of
@@ -20,11 +20,11 @@ from mocapress.records import Reader, Writer
 _MOST_FRAMES = 1 << 20
 _NO_MODEL, _MODEL = 0, 1
 _FAST_LEVELS = 2
-"""Up to this level couplings are not looked for: core/exact_fast.hpp has no use for them."""
+"""Up to this level couplings are not looked for: core/exact_fast/codec.hpp has no use for them."""
 
 
 @dataclass(frozen=True, slots=True)
-class Exact:
+class Exact(Codec):
     """Prediction by several models that learn as they go, and coding on the decimal grid."""
 
     id: ClassVar[str] = "exact"

@@ -14,7 +14,7 @@ from itertools import groupby, product
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.codecs.exact.roles import Coupling, CouplingKind
+from mocapress.codecs.exact.coupling import Coupling, CouplingKind
 from mocapress.motion import Column
 from mocapress.records import Writer
 

@@ -8,6 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
+from mocapress.codecs.exact.coupling import (
+    Coupling,
+    arrange,
+    read_coupling,
+    write_coupling,
+)
 from mocapress.codecs.exact.skeletons import PLACES
 from mocapress.codecs.runs import read_runs, write_runs
 from mocapress.records import Reader, Writer
@@ -20,9 +26,6 @@ _MOST_EXPONENT = 1000
 _LINE_DIGITS = 32
 _HALF_TURN = 180
 _JUMP = 300
-_JOINT_PARAMETERS = 7
-_JOINT_SHAPES = 243
-_MOST_BITS = 40
 
 
 class Role(IntEnum):
@@ -37,35 +40,6 @@ class Role(IntEnum):
     """Rounding noise: more than half of the numbers are below 1e-10 but not 0."""
 
 
-class CouplingKind(IntEnum):
-    """By what the targets of a coupling follow from its sources; core/exact_law.hpp, _joint.hpp."""
-
-    POLYNOMIAL = 0
-    SPINE = 1
-    NECK = 2
-    THUMB = 3
-    OTHER_THUMB = 4
-    JOINT = 5
-    SPINE_MIDDLE = 6
-    NECK_MIDDLE = 7
-
-
-# Kinds whose sources change places with the targets, too.
-_REORDERED = (CouplingKind.JOINT, CouplingKind.SPINE_MIDDLE, CouplingKind.NECK_MIDDLE)
-
-
-@dataclass(frozen=True, slots=True)
-class Coupling:
-    """Columns that are a function of others in the same frame."""
-
-    kind: CouplingKind
-    sources: tuple[int, ...]
-    targets: tuple[int, ...]
-    """In the order in which they are coded; all behind the sources."""
-    parameters: tuple[int, ...] = ()
-    """Of a joint: shape, bits, and u, v, c as multiples of 2^-bits, a one left out of u and v."""
-
-
 @dataclass(frozen=True, slots=True)
 class Roles:
     """What the compiled coder is told, and how its columns make up the clip's."""
@@ -74,7 +48,7 @@ class Roles:
     originals: tuple[int, ...]
     """Per column: which column it copies; its own index where it copies none."""
     lines: tuple[tuple[int, int], ...]
-    """Per column: line of numbers and digits, of core/number_line.hpp."""
+    """Per column: line of numbers and digits, of core/numbers/line.hpp."""
     exponents: tuple[int, ...]
     """Per column: numbers times 2^exponent are about as large as angles in degrees."""
     turns: tuple[int, ...]
@@ -90,16 +64,8 @@ class Roles:
     @property
     def coded(self) -> list[int]:
         """The columns that chunks hold, in the order of the compiled coder: noise comes last."""
-        columns = self.of(Role.PREDICTED, Role.NOISE)
-        # Columns change places with each other where a law has another order than the file.
-        for coupling in self.couplings:
-            moved = coupling.targets
-            if coupling.kind in _REORDERED:
-                moved = (*coupling.sources, *moved)
-            places = sorted(columns.index(column) for column in moved)
-            for place, column in zip(places, moved, strict=True):
-                columns[place] = column
-        return columns
+        predicted, _ = arrange(self.of(Role.PREDICTED), self.couplings)
+        return predicted + self.of(Role.NOISE)
 
     def coupled(self) -> list[tuple[int, list[int], list[int], list[float]]]:
         """Give the couplings as the compiled coder has them, in places among ``coded``."""
@@ -109,13 +75,13 @@ class Roles:
                 coupling.kind,
                 [place[c] for c in coupling.sources],
                 sorted(place[c] for c in coupling.targets),
-                _numbers(coupling.parameters),
+                coupling.numbers(),
             )
             for coupling in self.couplings
         ]
 
     def plan(self, columns: Sequence[int]) -> NDArray[np.int32]:
-        """Give the plan of columns for the compiled coder, (n, 6): see core/exact.hpp."""
+        """Give the plan of columns for the compiled coder, (n, 6): see core/exact/codec.hpp."""
         rows = [
             (
                 *self.lines[c],
@@ -127,18 +93,6 @@ class Roles:
             for c in columns
         ]
         return np.array(rows, dtype=np.int32).reshape(-1, 6)
-
-
-def _numbers(parameters: Sequence[int]) -> list[float]:
-    """Give the parameters of a joint as core/exact_joint.hpp has them."""
-    if not parameters:
-        return []
-    shape, bits, *multiples = parameters
-    ones, shape = divmod(shape, _JOINT_SHAPES)
-    numbers = [multiple / 2**bits for multiple in multiples]
-    numbers.insert(ones % 3, 1.0)
-    numbers.insert(3 + ones // 3, 1.0)
-    return [float(shape), *numbers]
 
 
 def find_roles(
@@ -169,7 +123,7 @@ def find_roles(
         tuple(lines),
         tuple(_exponents(values, roles)),
         tuple(_turns(values, roles)),
-        tuple(couple(predicted, lines)),
+        tuple(arrange(predicted, couple(predicted, lines))[1]),
         places,
     )
 
@@ -213,13 +167,7 @@ def write_roles(writer: Writer, roles: Roles) -> None:
         writer.integer(column - roles.originals[column] - 1)
     writer.integer(len(roles.couplings))
     for coupling in roles.couplings:
-        writer.integer(coupling.kind)
-        for side in (coupling.sources, coupling.targets):
-            writer.integer(len(side))
-            for column in side:
-                writer.integer(column)
-        for parameter in coupling.parameters:
-            writer.signed(parameter)
+        write_coupling(writer, coupling)
     writer.integer(roles.places)
 
 
@@ -247,7 +195,12 @@ def read_roles(reader: Reader, columns: int) -> Roles:
             originals[column] = column - 1 - reader.integer(2**20)
             if originals[column] < 0 or roles[originals[column]] is Role.COPY:
                 raise reader.fail("a column copies one that is not there")
-    couplings = tuple(_read_coupling(reader, roles) for _ in range(reader.count(5)))
+    couplings = [read_coupling(reader, columns) for _ in range(reader.count(5))]
+    if any(roles[c] is not Role.PREDICTED for own in couplings for c in own.sources + own.targets):
+        raise reader.fail("a coupling of columns that are not predicted")
+    predicted = [column for column, role in enumerate(roles) if role is Role.PREDICTED]
+    if arrange(predicted, couplings)[1] != couplings:
+        raise reader.fail("couplings that cannot stand together")
     places = reader.integer(1) == 1
     if places and columns != PLACES:
         raise reader.fail("the channels of a skeleton that has others")
@@ -257,22 +210,6 @@ def read_roles(reader: Reader, columns: int) -> Roles:
         tuple(lines),
         tuple(exponents),
         tuple(turns for turns, _ in told),
-        couplings,
+        tuple(couplings),
         places,
     )
-
-
-def _read_coupling(reader: Reader, roles: Sequence[Role]) -> Coupling:
-    kind = CouplingKind(reader.integer(max(CouplingKind)))
-    sources, targets = (
-        tuple(reader.integer(len(roles) - 1) for _ in range(reader.count())) for _ in range(2)
-    )
-    chosen = (*sources, *targets)
-    if len(set(chosen)) < len(chosen) or any(roles[c] is not Role.PREDICTED for c in chosen):
-        raise reader.fail("a coupling of columns that are not predicted")
-    parameters: tuple[int, ...] = ()
-    if kind is CouplingKind.JOINT:
-        parameters = tuple(reader.signed() for _ in range(_JOINT_PARAMETERS))
-        if not (0 <= parameters[0] < 9 * _JOINT_SHAPES and 0 <= parameters[1] <= _MOST_BITS):
-            raise reader.fail("a joint of impossible shape")
-    return Coupling(kind, sources, targets, parameters)

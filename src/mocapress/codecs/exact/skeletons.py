@@ -1,7 +1,7 @@
 """Which clips move the skeleton whose geometry the compiled coder knows.
 
 Nothing is taken from names: what counts is which channels the joints have, one after the other.
-core/exact_kinematics_tables.hpp has the skeleton, that of the CMU motion capture database.
+core/exact/kinematics_tables.hpp has the skeleton, that of the CMU motion capture database.
 """
 
 from collections.abc import Sequence
@@ -22,9 +22,9 @@ _USUAL = {1: "x", 2: "xz", 3: "xyz"}
 
 def axes(joint: Sequence[Column]) -> str:
     """Give the axes of a joint's channels; of an AMC without its skeleton, the usual ones."""
-    if all(column.kind[0] == "v" for column in joint):
+    if all(column.kind[:1] == "v" for column in joint):
         return _USUAL.get(len(joint), "")
-    return "".join(column.kind[-1] for column in joint)
+    return "".join(column.kind[-1:] for column in joint)
 
 
 def is_known(columns: Sequence[Column]) -> bool:
@@ -37,8 +37,8 @@ def is_known(columns: Sequence[Column]) -> bool:
         len(joints) == len(_JOINTS)
         and all(
             kinds == " ".join(column.kind for column in joint)
-            or (joint[0].kind[0] == "v" and len(kinds.split()) == len(joint))
+            or (joint[0].kind[:1] == "v" and len(kinds.split()) == len(joint))
             for joint, kinds in zip(joints, _JOINTS, strict=True)
         )
-        and all(column.unit == "deg" for column in columns if column.kind[0] == "r")
+        and all(column.unit == "deg" for column in columns if column.kind[:1] == "r")
     )

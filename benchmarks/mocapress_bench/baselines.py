@@ -1,0 +1,63 @@
+"""The predictors that the APP paper compares with (its Table 2), over the same mantissa coder.
+
+They keep the codec contract but are not registered: they are for the benchmark.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress.codecs.app import App, Coding
+from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
+from mocapress.motion import Clip, Column
+
+
+@dataclass(frozen=True, slots=True)
+class _OneAlpha(Codec):
+    """APP with the same alpha everywhere and so without indices."""
+
+    id: ClassVar[str]
+    alpha: ClassVar[float]
+    lossless: ClassVar[bool] = True
+
+    mantissa_limit: int = App().mantissa_limit
+    chunk: int = App().chunk
+
+    @property
+    def coding(self) -> Coding:
+        """What the compiled coder is told."""
+        return Coding((self.alpha,), 1, self.mantissa_limit, self.chunk)
+
+    def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:  # noqa: ARG002
+        """Code a clip, as ``App.encode`` does."""
+        return self.coding.encode(clip)
+
+    def decode(
+        self,
+        header: bytes,
+        chunks: Sequence[Chunk],
+        columns: Sequence[Column],
+        *,
+        model: Model | None = None,  # noqa: ARG002
+    ) -> NDArray[np.float64]:
+        """Decode chunks, as ``App.decode`` does."""
+        return self.coding.decode(header, chunks, columns)
+
+
+@dataclass(frozen=True, slots=True)
+class Parallelogram(_OneAlpha):
+    """The parallelogram predictor without alpha (Eq. 4), "Non-Alpha PP" in the paper."""
+
+    id: ClassVar[str] = "parallelogram"
+    alpha: ClassVar[float] = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class PreviousFrame(_OneAlpha):
+    """MPEG-4 FBA's linear prediction with the quantisation left out, "LP" in the paper."""
+
+    id: ClassVar[str] = "mpeg4-lp"
+    alpha: ClassVar[float] = 0.0

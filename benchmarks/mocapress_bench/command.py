@@ -1,0 +1,16 @@
+"""``mocapress bench``: found by mocapress through the entry point ``mocapress.commands``."""
+
+import typer
+
+from mocapress_bench.demo import demo
+from mocapress_bench.diffma_command import diffma
+from mocapress_bench.lossless_command import lossless
+
+app = typer.Typer(
+    help="Measure codecs on clips.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+for command in (lossless, diffma, demo):
+    app.command()(command)

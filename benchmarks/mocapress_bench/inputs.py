@@ -1,0 +1,63 @@
+"""What the commands share: which clips to measure, and how far they have come."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+
+SAMPLES = Path(__file__).parents[2] / "samples"
+
+Corpus = Annotated[
+    Path | None, typer.Argument(help="Folder of clips; without it, the samples of a checkout.")
+]
+Json = Annotated[
+    Path | None, typer.Option("--json", help="Write all rows to this file.", metavar="FILE")
+]
+Markdown = Annotated[
+    Path | None, typer.Option("--markdown", help="Write the tables to this file.", metavar="FILE")
+]
+Force = Annotated[bool, typer.Option("--force", "-f", help="Overwrite existing files.")]
+Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks.", hidden=True)]
+
+
+def clips_in(folder: Path) -> list[Path]:
+    """Find the motion files below a folder."""
+    return sorted(p for p in folder.rglob("*") if p.suffix.lower() in (".amc", ".bvh"))
+
+
+def clips_named(corpus: Path | None) -> tuple[list[Path], Path]:
+    """Give the clips that a command is to measure, and the folder that their names start from."""
+    folder = corpus or SAMPLES
+    if corpus is None and not folder.is_dir():
+        usage("name a folder of clips")
+    paths = clips_in(folder) if folder.is_dir() else [folder]
+    if not paths:
+        usage(f"no AMC or BVH files in {folder}")
+    return paths, folder if folder.is_dir() else folder.parent
+
+
+def say(notes: list[str]) -> None:
+    """Print notes to stderr."""
+    for note in notes:
+        typer.echo(f"mocapress: {note}", err=True)
+
+
+def usage(message: str) -> NoReturn:
+    """End with the exit code of wrong usage."""
+    say([message])
+    raise typer.Exit(2)
+
+
+def progress_line(total: int) -> Callable[[str], None]:
+    """Give a function that shows a clip's name, and how many there have been, on a terminal."""
+    count = 0
+
+    def show(what: str) -> None:
+        nonlocal count
+        count += 1
+        if sys.stderr.isatty():
+            typer.echo(f"\r\033[K{f'{count}/{total} ' if total else ''}{what}", err=True, nl=False)
+
+    return show

@@ -1,0 +1,203 @@
+"""``mocapress bench lossless``: every clip with every lossless codec and tool, in one run."""
+
+import hashlib
+import subprocess
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from time import perf_counter
+from typing import Any, TypeVar
+
+import numpy as np
+
+from mocapress.codecs import Codec, Model, spec
+from mocapress.container import Kind, pack, pack_file, parse, unpack
+from mocapress.errors import FormatError
+from mocapress.formats import asf
+from mocapress.formats.files import find_asf, sniff, split
+from mocapress.formats.layout import Layout
+from mocapress.models import model_bytes
+from mocapress.restore import chunks_of
+from mocapress_bench.contenders import Tool, contenders
+from mocapress_bench.learning import Learned
+from mocapress_bench.rivals import Rival
+
+Row = dict[str, Any]
+T = TypeVar("T")
+
+
+def measure(
+    paths: Iterable[Path],
+    root: Path,
+    *,
+    only: str = "",
+    learned: Iterable[Learned] = (),
+    repeat: int = 1,
+    progress: Callable[[str], None] = lambda _: None,
+) -> tuple[list[Row], list[str]]:
+    """Measure clips; give one row per clip and contender, and what could not be measured.
+
+    Times are the best of ``repeat``. ``encode_us_per_frame`` and ``decode_us_per_frame`` are the
+    codec's own work on the matrix (a tool's: its work on the file); ``compress_s`` and
+    ``decompress_s`` are the whole way from file bytes to file bytes. ``counts`` says what
+    ``compressed_bytes`` stand for: the ``file``, or its ``values`` alone, without the text around
+    them. ``model_bytes`` are those of a model's file, once for all clips that share it.
+    """
+    chosen, missing = contenders(only)
+    notes = [f"not installed: {name}" for name in missing]
+    rows: list[Row] = []
+    counted: set[tuple[str, bytes]] = set()
+    for path in paths:
+        progress(str(path.relative_to(root)))
+        data = path.read_bytes()
+        clip_row: Row = {"clip": str(path.relative_to(root)), "raw_bytes": len(data)}
+        try:
+            clip_row |= _shape(data, path)
+            clip_rows = []
+            for name, contender in chosen.items():
+                if isinstance(contender, Tool):
+                    row = _tool_row(data, contender, repeat, clip_row["frames"])
+                elif isinstance(contender, Rival):
+                    row = _rival_row(data, path, contender, repeat)
+                else:
+                    row = _codec_row(data, path, contender, repeat)
+                clip_rows.append(row | {"codec": name})
+            for one in learned:
+                model = one.models[path]
+                row = _codec_row(data, path, one.codec, repeat, model) | {"codec": one.name}
+                if (one.name, model.digest) not in counted:
+                    counted.add((one.name, model.digest))
+                    row["model_bytes"] = len(model_bytes(model))
+                clip_rows.append(row)
+        except FormatError as error:
+            notes.append(f"left out, cannot be read: {error}")
+            continue
+        rows += [clip_row | row for row in clip_rows]
+    return rows, notes
+
+
+def peak_memory(path: Path, contender: str) -> dict[str, float]:
+    """Measure in a process of its own what compressing and restoring a file adds, MB."""
+    done = subprocess.run(  # noqa: S603
+        [sys.executable, "-m", "mocapress_bench.peak", str(path), contender],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    before, after = (float(word) for word in done.stdout.split())
+    return {"peak_mb": after - before}
+
+
+def _shape(data: bytes, path: Path) -> Row:
+    kind = sniff(data, path.name)
+    if kind not in ("amc", "bvh"):
+        raise FormatError("not a motion file", file=str(path))
+    clip = split(data, kind, file=str(path)).clip
+    return {"format": kind, "frames": clip.frames, "channels": clip.channels}
+
+
+def _codec_row(
+    data: bytes, path: Path, codec: Codec, repeat: int, model: Model | None = None
+) -> Row:
+    kind = sniff(data, path.name) or ""
+    beside = find_asf(path) if kind == "amc" else None
+    skeleton = asf.parse_asf(beside.read_bytes(), str(beside)) if beside else None
+    (clip, layout, _), split_s = _best(
+        lambda: split(data, kind, skeleton=skeleton, file=str(path)), repeat
+    )
+    encoded, encode_s = _best(lambda: codec.encode(clip, model=model), repeat)
+    blob, pack_s = _best(
+        lambda: pack_file(
+            kind=Kind[kind.upper()],
+            size=len(data),
+            digest=hashlib.sha256(data).digest(),
+            payloads=[(chunk.frames, chunk.restart, chunk.payload) for chunk in encoded.chunks],
+            columns=clip.channels,
+            codec=spec(codec),
+            model=model.digest if model else b"",
+            codec_header=encoded.header,
+            layout=pack(layout.to_bytes()),
+        ),
+        repeat,
+    )
+    (mcz, read), open_s = _best(lambda: _open(blob), repeat)
+    chunks = chunks_of(mcz)
+    values, decode_s = _best(
+        lambda: codec.decode(mcz.codec_header, chunks, clip.columns, model=model), repeat
+    )
+    restored, join_s = _best(lambda: read.join(values), repeat)
+    payload = sum(len(chunk.payload) for chunk in encoded.chunks)
+    frames = max(clip.frames, 1)
+    return {
+        "counts": "file",
+        "compressed_bytes": len(blob),
+        "payload_bytes": payload,
+        "index_bytes": encoded.index_bytes,
+        "model_bytes": 0,
+        "header_bytes": len(blob) - payload,
+        "encode_us_per_frame": 1e6 * encode_s / frames,
+        "decode_us_per_frame": 1e6 * decode_s / frames,
+        "compress_s": split_s + encode_s + pack_s,
+        "decompress_s": open_s + decode_s + join_s,
+        **_proof(data, restored),
+    }
+
+
+def _open(blob: bytes) -> tuple[Any, Layout]:
+    mcz = parse(blob)
+    layout = Layout.from_bytes(unpack(mcz.layout, "layout"), mcz.kind.name.lower(), mcz.frames)
+    return mcz, layout
+
+
+def _rival_row(data: bytes, path: Path, rival: Rival, repeat: int) -> Row:
+    kind = sniff(data, path.name) or ""
+    (clip, layout, _), split_s = _best(lambda: split(data, kind, file=str(path)), repeat)
+    packed, encode_s = _best(lambda: rival.compress(clip.values), repeat)
+    values, decode_s = _best(lambda: rival.decompress(packed, (clip.frames, clip.channels)), repeat)
+    restored, join_s = _best(lambda: layout.join(values), repeat)
+    frames = max(clip.frames, 1)
+    return {
+        "counts": "values",
+        "compressed_bytes": len(packed),
+        "payload_bytes": len(packed),
+        "index_bytes": 0,
+        "model_bytes": 0,
+        "header_bytes": 0,
+        "encode_us_per_frame": 1e6 * encode_s / frames,
+        "decode_us_per_frame": 1e6 * decode_s / frames,
+        "compress_s": split_s + encode_s,
+        "decompress_s": decode_s + join_s,
+        **_proof(data, restored),
+    }
+
+
+def _tool_row(data: bytes, tool: Tool, repeat: int, frames: int) -> Row:
+    packed, compress_s = _best(lambda: tool.compress(data), repeat)
+    restored, decompress_s = _best(lambda: tool.decompress(packed), repeat)
+    return {
+        "counts": "file",
+        "compressed_bytes": len(packed),
+        "payload_bytes": len(packed),
+        "index_bytes": 0,
+        "model_bytes": 0,
+        "header_bytes": 0,
+        "encode_us_per_frame": 1e6 * compress_s / max(frames, 1),
+        "decode_us_per_frame": 1e6 * decompress_s / max(frames, 1),
+        "compress_s": compress_s,
+        "decompress_s": decompress_s,
+        **_proof(data, restored),
+    }
+
+
+def _proof(data: bytes, restored: bytes) -> Row:
+    digest = hashlib.sha256(restored).hexdigest()
+    return {"exact": digest == hashlib.sha256(data).hexdigest(), "sha256": digest}
+
+
+def _best(work: Callable[[], T], repeat: int) -> tuple[T, float]:
+    times = []
+    for _ in range(repeat):
+        start = perf_counter()
+        result = work()
+        times.append(perf_counter() - start)
+    return result, float(np.min(times))

@@ -1,0 +1,125 @@
+"""``mocapress bench lossless``."""
+
+import json as jsonlib
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from mocapress_bench.inputs import (
+    Corpus,
+    Debug,
+    Force,
+    Json,
+    Markdown,
+    clips_named,
+    progress_line,
+    say,
+    usage,
+)
+
+_FEW = 10
+Plots = Annotated[
+    Path | None, typer.Option("--plots", help="Draw the figures here.", metavar="FOLDER")
+]
+Only = Annotated[
+    str,
+    typer.Option("--only", help="Codecs, e.g. app:t=10, and tools; commas between."),
+]
+Folds = Annotated[
+    int | None,
+    typer.Option(
+        "--folds",
+        min=2,
+        help="Measure codecs that learn with models, too: folders are dealt to N folds, each "
+        "coded with a model of the others.",
+        metavar="N",
+    ),
+]
+TrainFrames = Annotated[
+    int, typer.Option("--train-frames", min=1, help="Frames that each such model learns from.")
+]
+ModelFile = Annotated[
+    Path | None, typer.Option("--model", help="Measure with this model, too.", metavar="FILE.mcm")
+]
+Repeat = Annotated[int, typer.Option("--repeat", min=1, help="Take the best of N times.")]
+
+
+def lossless(
+    corpus: Corpus = None,
+    json: Json = None,
+    markdown: Markdown = None,
+    plots: Plots = None,
+    only: Only = "",
+    folds: Folds = None,
+    train_frames: TrainFrames = 40_000,
+    model: ModelFile = None,
+    repeat: Repeat = 1,
+    force: Force = False,
+    debug: Debug = False,  # noqa: ARG001
+) -> None:
+    """Compare every lossless codec with each other and with general-purpose tools."""
+    from mocapress.errors import CorruptError, ParameterError
+    from mocapress.storage import write_whole
+    from mocapress_bench import app_figures, learning, tables
+    from mocapress_bench.lossless import measure, peak_memory
+
+    paths, root = clips_named(corpus)
+    try:
+        learned = learning.given(paths, only, model) if model else []
+        if folds:
+            learned += learning.cross_validated(
+                paths, only, folds=folds, most_frames=train_frames, progress=progress_line(0)
+            )
+        rows, notes = measure(
+            paths,
+            root,
+            only=only,
+            learned=learned,
+            repeat=repeat,
+            progress=progress_line(len(paths)),
+        )
+    except (ParameterError, CorruptError, FileNotFoundError) as error:
+        usage(str(error))
+    say(notes)
+    if not rows:
+        usage("none of the clips can be read")
+    largest = max(paths, key=lambda path: path.stat().st_size)
+    with_models = {one.name for one in learned}
+    names = [name for name in tables.grouped(rows, "codec") if name not in with_models]
+    memory = {name: peak_memory(largest, name)["peak_mb"] for name in names}
+    parts = [tables.totals(rows, memory), tables.by_group(rows)]
+    if len(paths) <= _FEW:
+        parts.append(tables.by_clip(rows))
+    if plots:
+        parts.append(app_figures.report(_figures(paths, rows, plots)))
+    for part in parts:
+        print(part)
+    if json:
+        write_whole(json, jsonlib.dumps(rows, indent=1).encode(), force=force)
+    if markdown:
+        whole = parts if len(paths) <= _FEW else [*parts, tables.by_clip(rows)]
+        write_whole(markdown, "\n".join(whole).encode(), force=force)
+    if not all(row["exact"] for row in rows):
+        say(["not everything was restored exactly"])
+        raise typer.Exit(3)
+
+
+def _figures(paths: list[Path], rows: list[dict[str, Any]], folder: Path) -> dict[str, Any]:
+    from mocapress import api
+    from mocapress.errors import MocapressError
+    from mocapress_bench import app_figures, pareto
+
+    clips = []
+    for path in paths:
+        try:
+            clips.append((api.read(path), path.stat().st_size))
+        except MocapressError:
+            continue  # said already
+    numbers = app_figures.measure(clips, progress_line(0))
+    try:
+        app_figures.draw(numbers, folder)
+        pareto.draw(rows, folder / "ratio_and_speed.png")
+    except ImportError:
+        usage("--plots needs matplotlib: pip install matplotlib")
+    return numbers

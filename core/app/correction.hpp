@@ -1,0 +1,133 @@
+// APP's floating-point compression: how an actual value is coded beside its prediction (Section 4).
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
+
+#include "coding/range_coder.hpp"
+
+namespace mocapress::app {
+
+template <class Float>
+struct Layout;
+template <>
+struct Layout<float> {
+  using Bits = std::uint32_t;
+  static constexpr int mantissa_bits = 23;
+  static constexpr int exponent_bits = 8;
+  static constexpr int length_bits = 5;
+};
+template <>
+struct Layout<double> {
+  using Bits = std::uint64_t;
+  static constexpr int mantissa_bits = 52;
+  static constexpr int exponent_bits = 11;
+  static constexpr int length_bits = 6;
+};
+
+// Step 1 of Algorithm 1.
+template <class Float>
+struct Parts {
+  bool sign;
+  int exponent;
+  std::int64_t mantissa;
+
+  static Parts split(Float value) {
+    using L = Layout<Float>;
+    const auto bits = std::bit_cast<typename L::Bits>(value);
+    return {(bits >> (L::mantissa_bits + L::exponent_bits)) != 0,
+            static_cast<int>(bits >> L::mantissa_bits & ((1 << L::exponent_bits) - 1)),
+            static_cast<std::int64_t>(bits & ((typename L::Bits{1} << L::mantissa_bits) - 1))};
+  }
+
+  Float join() const {
+    using L = Layout<Float>;
+    using Bits = typename L::Bits;
+    return std::bit_cast<Float>(static_cast<Bits>(
+        Bits{sign} << (L::mantissa_bits + L::exponent_bits) |
+        static_cast<Bits>(exponent) << L::mantissa_bits | static_cast<Bits>(mantissa)));
+  }
+};
+
+// Algorithm 1, with its contexts expo_diff and MTS[Exp].
+template <class Float>
+class Correction {
+  using L = Layout<Float>;
+
+ public:
+  explicit Correction(int mantissa_limit)
+      : limit_(mantissa_limit), mantissas_(std::size_t{1} << L::exponent_bits) {}
+
+  void encode(Encoder& encoder, Float actual, Float predicted) {
+    const auto a = Parts<Float>::split(actual);
+    const auto p = Parts<Float>::split(predicted);
+    const int difference = a.exponent - p.exponent;
+    const bool far = a.sign != p.sign || std::abs(difference) > kFarthest;
+    const bool same = !far && difference == 0;
+    encoder.bit(moved_, !same);
+    if (same) {
+      Mantissa& context = mantissas_[static_cast<std::size_t>(a.exponent)];
+      const std::int64_t correction = a.mantissa - p.mantissa;
+      const bool escape =
+          static_cast<int>(std::bit_width(static_cast<std::uint64_t>(std::abs(correction)))) >=
+          limit_;
+      if (can_escape()) encoder.bit(context.escape, escape);
+      if (!escape) return context.difference.encode(encoder, correction);  // step 4
+    } else {
+      expo_diff_.encode(encoder, far ? kFar : static_cast<unsigned>(difference + kFarthest));
+      if (far) {  // step 3
+        encoder.raw(a.sign, 1);
+        encoder.raw(static_cast<std::uint64_t>(a.exponent), L::exponent_bits);
+      }
+    }
+    encoder.raw(static_cast<std::uint64_t>(a.mantissa), L::mantissa_bits);  // step 5
+  }
+
+  Float decode(Decoder& decoder, Float predicted) {
+    auto value = Parts<Float>::split(predicted);
+    if (!decoder.bit(moved_)) {
+      Mantissa& context = mantissas_[static_cast<std::size_t>(value.exponent)];
+      if (!can_escape() || !decoder.bit(context.escape)) {
+        value.mantissa += context.difference.decode(decoder);
+        if (value.mantissa >> L::mantissa_bits != 0) sound_ = false;
+        return value.join();
+      }
+    } else {
+      const unsigned symbol = expo_diff_.decode(decoder);
+      if (symbol < kFar) {
+        value.exponent += static_cast<int>(symbol) - kFarthest;
+        if (value.exponent >> L::exponent_bits != 0) sound_ = false;
+      } else {
+        value.sign = decoder.raw(1) != 0;
+        value.exponent = static_cast<int>(decoder.raw(L::exponent_bits));
+      }
+    }
+    value.mantissa = static_cast<std::int64_t>(decoder.raw(L::mantissa_bits));
+    return value.join();
+  }
+
+  // Whether no decoded exponent or mantissa left its range.
+  bool sound() const { return sound_; }
+
+ private:
+  static constexpr int kFarthest = 3;                  // largest |Exp_a - Exp_p| of step 2
+  static constexpr unsigned kFar = 2 * kFarthest + 1;  // leads to step 3
+
+  struct Mantissa {
+    Bit escape;
+    Difference<L::length_bits> difference;
+  };
+
+  bool can_escape() const { return limit_ <= L::mantissa_bits; }
+
+  int limit_;
+  bool sound_ = true;
+  Bit moved_;  // expo_diff's first question: is the difference other than 0?
+  BitTree<3> expo_diff_;
+  std::vector<Mantissa> mantissas_;
+};
+
+}  // namespace mocapress::app

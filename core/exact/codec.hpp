@@ -1,0 +1,53 @@
+// The codec `exact`: every number is coded as its place on the line of numbers that its column can
+// hold, beside a prediction blended from several predictors that learn as they go. docs/exact.md
+// explains the model.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "coding/range_coder.hpp"
+#include "numbers/line.hpp"
+
+namespace mocapress::exact {
+
+struct Column {
+  Line line;
+  int digits;
+  bool noise;      // rounding noise around zero, which nothing predicts; such columns come last
+  int exponent;    // numbers are multiplied by 2^exponent before they are predicted
+  int turns;       // 1, 2: degrees from -180, from 0 on that jump by whole turns; else 0
+  int place = -1;  // among the channels of the skeleton of exact/kinematics.hpp, or none
+};
+
+// Columns that are functions of others in the same frame.
+struct Coupling {
+  int kind;  // 0: a polynomial of degree 3, learned as it goes; else a LawKind or Joint::kKind
+  std::vector<std::uint16_t> sources;
+  std::vector<std::uint16_t> targets;  // behind the sources, in ascending order
+  std::vector<double> parameters;      // of a joint
+};
+
+// What a coder has learned, for another to begin with.
+struct Start {
+  std::vector<float> shared;                // by all columns; empty: nothing
+  std::vector<std::vector<float>> columns;  // by each column; empty, or not of its size: nothing
+};
+
+struct Clip {
+  std::span<const Column> columns;
+  std::span<const Coupling> couplings;
+  int level;  // 1 to 9
+  const Start& start;
+};
+
+// Codes `frames` x columns.size() values, row by row, as one chunk that needs no other. Where
+// `learned` is given, it is filled with what the coder knows in the end.
+Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* learned = nullptr);
+
+// The inverse. Throws std::invalid_argument when `payload` is not what `encode` makes.
+void decode(ByteView payload, double* values, std::size_t frames, const Clip& clip);
+
+}  // namespace mocapress::exact

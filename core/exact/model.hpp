@@ -1,0 +1,296 @@
+// The model of one clip, or of a part of its columns: what is known of the frames so far, and how
+// the next one is coded with it.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "exact/blend.hpp"
+#include "exact/choice.hpp"
+#include "exact/codec.hpp"
+#include "exact/expert.hpp"
+#include "exact/kinematics.hpp"
+#include "exact/lawful.hpp"
+#include "exact/noise.hpp"
+#include "exact/own.hpp"
+#include "exact/plan.hpp"
+#include "exact/residual.hpp"
+#include "exact/sides.hpp"
+#include "exact/spread.hpp"
+#include "exact/turns.hpp"
+
+namespace mocapress::exact {
+
+inline constexpr double kLargest = 1e6;  // levels beyond are taken for this by the predictors
+inline constexpr double kFloor = 0.1;  // in steps: as close as a prediction can be expected to come
+inline constexpr double kFarthest = 20;         // in scales: an error beyond counts as that
+inline constexpr double kRounding = 0.15;       // in steps: what rounding adds to the scale
+inline constexpr std::uint32_t kNoCut = 65512;  // its chance, in 1/65536
+
+// One channel: everything about it that the channels do not share.
+struct Channel {
+  NumberLine line;
+  double unit;  // from numbers to levels
+  std::vector<std::size_t> experts;
+  std::optional<Turns> turns;
+  Lawful* law;  // or none
+  Blends* blends = nullptr;
+  std::size_t blend = 0;  // its place in `blends`
+  std::size_t from = 0;   // what a blend trusts at first: the predictors from <= i < to
+  std::size_t to = 0;
+  Choice<Lawful::kPredictions + 1> choice;  // of the law's predictions and the blend
+};
+
+struct NoiseColumn {
+  NumberLine line;
+  Noise noise;
+};
+
+// What was learned is kept as floats, chances in 24 bits.
+inline float kept(double value) { return static_cast<float>(value); }
+inline float kept(std::uint16_t value) { return value; }
+inline float kept(std::uint32_t value) { return static_cast<float>(value >> 8); }
+
+inline void take(double& value, float from) { value = from; }
+inline void take(std::uint16_t& value, float from) {
+  value = static_cast<std::uint16_t>(std::clamp(from, 15.0f, 65520.0f));
+}
+inline void take(std::uint32_t& value, float from) {
+  value = static_cast<std::uint32_t>(std::clamp(from, 1.0f, 16777215.0f)) << 8;
+}
+
+class Model {
+ public:
+  explicit Model(const Clip& clip)
+      : count_(predicted(clip.columns)),
+        own_(count_),
+        frames_(count_),
+        spreads_(count_),
+        residual_(count_) {
+    const auto columns = clip.columns;
+    const auto known = columns.first(count_);
+    if (knows_skeleton(known, clip.level)) kinematics_.emplace(known);
+    Plans plan = plans(known, clip.couplings, clip.level);
+    for (auto& expert : plan.experts) experts_.emplace_back(std::move(expert), count_);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const NumberLine line(columns[c].line, columns[c].digits);
+      if (c >= count_) {
+        noise_.push_back({line, Noise()});
+        continue;
+      }
+      std::vector<std::size_t> experts;
+      for (std::size_t e = 0; e <= experts_.size(); ++e) {
+        if (e == plan.before_own) experts.push_back(kOwn);
+        if (e < experts_.size() && experts_[e].predicts(c)) experts.push_back(e);
+      }
+      const double unit = std::ldexp(1.0, columns[c].exponent);
+      channels_.push_back({line, unit, experts, turns_of(columns[c]), nullptr});
+    }
+    for (const Coupling& coupling : clip.couplings) {
+      if (coupling.kind == 0) continue;
+      laws_.push_back(std::make_unique<Lawful>(coupling, columns));
+      for (const auto target : coupling.targets) channels_[target].law = laws_.back().get();
+    }
+    gather_blends(clip.level >= 8 ? Blends::kMostMemories : 1);
+    for (auto& expert : experts_) chains_.push_back(&expert.chain());
+    predictions_.resize(experts_.size() + Lawful::kPredictions + 1);
+    begin_with(clip.start);
+  }
+
+  Start learned() {
+    Start start;
+    visit_shared([&](auto& value) { start.shared.push_back(kept(value)); });
+    for (std::size_t c = 0; c < channels_.size() + noise_.size(); ++c) {
+      std::vector<float> column;
+      visit_column(c, [&](auto& value) { column.push_back(kept(value)); });
+      start.columns.push_back(std::move(column));
+    }
+    return start;
+  }
+
+  // `cut`: whether the motion begins anew, and tells nothing of how it goes on.
+  template <class Side>
+  void code_frame(Side& side, double* row, bool cut) {
+    for (std::size_t i = 0; i < noise_.size(); ++i) {
+      double& number = row[count_ + i];
+      number = noise_[i].noise.code(side, noise_[i].line, number);
+    }
+    frames_.next();
+    if (first_ || side.chance(kNoCut, cut)) return code_first_frame(side, row);
+    for (auto& expert : experts_) expert.begin();
+    own_.begin(frames_);
+    spreads_.begin();
+    if (kinematics_) kinematics_->begin(frames_);
+    for (std::size_t c = 0; c < count_; ++c) row[c] = code_number(side, c, row[c]);
+    weights_.clear();
+    for (auto& expert : experts_) weights_.push_back(expert.weigh(frames_));
+    Chain::learn_all(chains_, weights_);
+    own_.learn(frames_);
+    for (auto& blends : blends_) blends.learn();
+    spreads_.learn();
+  }
+
+ private:
+  template <class Visit>
+  void visit_shared(Visit&& each) {
+    residual_.visit(each);
+  }
+
+  template <class Visit>
+  void visit_column(std::size_t c, Visit&& each) {
+    if (c >= count_) return noise_[c - count_].noise.visit(each);
+    spreads_.visit(c, each);
+    channels_[c].blends->visit(channels_[c].blend, each);
+    if (channels_[c].law != nullptr) channels_[c].choice.visit(each);
+  }
+
+  void begin_with(const Start& start) {
+    std::size_t size = 0;
+    visit_shared([&](auto&) { ++size; });
+    if (start.shared.size() == size) {
+      const float* next = start.shared.data();
+      visit_shared([&](auto& value) { take(value, *next++); });
+      residual_.share_shape();
+    }
+    for (std::size_t c = 0; c < std::min(start.columns.size(), count_ + noise_.size()); ++c) {
+      size = 0;
+      visit_column(c, [&](auto&) { ++size; });
+      if (start.columns[c].size() != size) continue;
+      const float* next = start.columns[c].data();
+      visit_column(c, [&](auto& value) { take(value, *next++); });
+    }
+  }
+
+  // Columns of noise come last.
+  static std::size_t predicted(std::span<const Column> columns) {
+    const auto noise = std::ranges::find_if(columns, [](const Column& c) { return c.noise; });
+    return static_cast<std::size_t>(noise - columns.begin());
+  }
+
+  // Channels with equally many predictors are blended together.
+  void gather_blends(std::size_t memories) {
+    std::map<std::size_t, std::size_t> counts;
+    for (auto& channel : channels_) {
+      const std::size_t usual = channel.experts.size();
+      const bool sure = channel.law != nullptr && channel.law->sure();
+      channel.from = sure ? usual : 0;
+      channel.to = sure ? usual + 1 : usual;
+      channel.blend = counts[predictors(channel)]++;
+    }
+    blends_.reserve(counts.size());
+    for (const auto& [count, channels] : counts) {
+      blends_.emplace_back(channels, count, memories);
+      for (auto& channel : channels_) {
+        if (predictors(channel) == count) channel.blends = &blends_.back();
+      }
+    }
+  }
+
+  static std::size_t predictors(const Channel& channel) {
+    return channel.experts.size() + (channel.law != nullptr ? Lawful::kPredictions : 0);
+  }
+
+  static std::optional<Turns> turns_of(const Column& column) {
+    if (column.turns == 0) return std::nullopt;
+    return Turns(column.turns == 1 ? -180 : 0);
+  }
+
+  template <class Side>
+  void code_first_frame(Side& side, double* row) {
+    for (std::size_t c = 0; c < count_; ++c) {
+      row[c] = residual_.code_first(side, channels_[c].line, row[c]);
+      for (std::size_t age = 0; age < Frames::kKept; ++age) {
+        frames_.next();
+        frames_.set(c, level(c, row[c]));
+      }
+    }
+    first_ = false;
+  }
+
+  template <class Side>
+  double code_number(Side& side, std::size_t c, double number) {
+    Channel& channel = channels_[c];
+    if (kinematics_) frames_.set_guess(c, kinematics_->guess(c, frames_));
+    const std::size_t count = channel.experts.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t expert = channel.experts[i];
+      predictions_[i] = expert == kOwn ? own_.move(c)
+                                       : experts_[expert].predict(c, frames_) - frames_.level(c, 1);
+    }
+    if (channel.law != nullptr) channel.law->predict(c, frames_, predictions_.data() + count);
+    double blended = channel.blends->predict(channel.blend, predictions_, channel.from, channel.to);
+    const bool unsure = channel.law != nullptr && !channel.law->sure();
+    if (unsure) {
+      predictions_[count + Lawful::kPredictions] = blended;
+      blended = predictions_[count + channel.choice.nearest()];
+    }
+    const double predicted = sane(frames_.level(c, 1) + blended);
+    const double expected = predicted / channel.unit;
+    double turned = channel.turns ? channel.turns->left(expected) : 0;
+    const double step = channel.line.step(expected - turned) * channel.unit;
+    const double loose = channel.law != nullptr ? channel.law->looseness() : 1;
+    const double scale = loose * spreads_.scale(c, doubt(channel, blended, step) / loose,
+                                                (kFloor * step + kTiny) / loose);
+    const double width = (scale + kRounding * step) / channel.unit;
+    if (channel.turns) turned = channel.turns->code(side, expected, width, number);
+    const double coded = residual_.code(side, c, channel.line, expected - turned, width, number);
+    const double before = frames_.level(c, 1) / channel.unit;
+    const double now = level(c, channel.turns ? coded + Turns::since(before, coded) : coded);
+    const double error = now - frames_.level(c, 1);
+    channel.blends->see(channel.blend, error, scale + step);
+    if (unsure) {
+      channel.choice.learn(predictions_.data() + count, error, kFarthest * (scale + step));
+    }
+    spreads_.see(c, (error - blended) / loose);
+    frames_.set(c, now);
+    return coded;
+  }
+
+  // How far the predictors are from what was made of them; where a law is sure, how far rounding
+  // may have led it astray.
+  double doubt(const Channel& channel, double blended, double step) const {
+    if (channel.law != nullptr && channel.law->sure()) return channel.law->looseness() * step;
+    double sum = 0;
+    const std::size_t count = channel.experts.size();
+    for (std::size_t i = 0; i < count; ++i) sum += std::fabs(predictions_[i] - blended);
+    return sum / static_cast<double>(count);
+  }
+
+  static constexpr double kTiny = 1e-9;
+  static constexpr std::size_t kOwn = ~std::size_t{0};  // in place of an expert
+
+  static double sane(double level) {
+    return level > -kLargest && level < kLargest ? level : level >= kLargest ? kLargest : -kLargest;
+  }
+
+  double level(std::size_t c, double number) const {
+    const double level = number * channels_[c].unit;
+    return level == level ? sane(level) : 0;
+  }
+
+  std::size_t count_;  // columns that are predicted
+  std::vector<Expert> experts_;
+  OwnChains own_;
+  std::vector<Channel> channels_;
+  std::vector<NoiseColumn> noise_;
+  std::vector<std::unique_ptr<Lawful>> laws_;
+  std::optional<Kinematics> kinematics_;
+  std::vector<Blends> blends_;
+  Frames frames_;
+  Spreads spreads_;
+  Residual residual_;
+  std::vector<double> predictions_;
+  std::vector<Chain*> chains_;
+  std::vector<double> weights_;
+  bool first_ = true;
+};
+
+}  // namespace mocapress::exact

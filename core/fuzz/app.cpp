@@ -1,0 +1,75 @@
+// APP's decoder on any bytes; its encoder on any values, whose payload must decode to them; and the
+// decoder on such a payload with one byte changed.
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "app/codec.hpp"
+#include "fuzz/input.hpp"
+
+namespace app = mocapress::app;
+using mocapress::Bytes;
+using mocapress::ByteView;
+using mocapress::fuzz::Input;
+
+namespace {
+
+constexpr double kAlphas[] = {-1, -0.5, -0.25, 0, 0.25, 0.5, 1, 2};
+
+bool decodes(ByteView payload, std::vector<double>& values, std::size_t frames,
+             std::span<const app::Column> columns, const app::Parameters& parameters) {
+  try {
+    app::decode(payload, values.data(), frames, columns, parameters);
+    return true;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  Input input({data, size});
+  const bool round_trip = input.below(2) != 0;
+  const std::size_t frames = input.below(64);
+  std::vector<app::Column> columns(input.below(9));
+  const app::Parameters parameters{{kAlphas, std::size_t{1} << input.below(4)},
+                                   1 + input.below(20),
+                                   1 + static_cast<int>(input.below(53))};
+  for (auto& column : columns) {
+    column.parent =
+        static_cast<std::int32_t>(input.below(static_cast<unsigned>(columns.size()) + 1)) - 1;
+    column.precision = static_cast<app::Precision>(input.below(3));
+    column.grid = static_cast<mocapress::Grid>(input.below(4));
+    column.digits = static_cast<std::int32_t>(input.below(30)) - 2;
+  }
+  std::vector<double> decoded(frames * columns.size());
+  if (!round_trip) {
+    decodes(input.rest(), decoded, frames, columns, parameters);
+    return 0;
+  }
+
+  std::vector<double> values(decoded.size());
+  if (!values.empty()) {
+    const std::size_t given = std::min(input.rest().size(), values.size() * sizeof(double));
+    std::memcpy(values.data(), input.rest().data(), given);
+  }
+  try {
+    const auto precisions = app::precisions(values.data(), frames, columns);
+    for (std::size_t c = 0; c < columns.size(); ++c) columns[c].precision = precisions[c];
+    Bytes payload = app::encode(values.data(), frames, columns, parameters);
+    if (!decodes(payload, decoded, frames, columns, parameters)) std::abort();
+    if (!values.empty() && std::memcmp(values.data(), decoded.data(), 8 * values.size()) != 0) {
+      std::abort();
+    }
+    payload[input.below(256) % payload.size()] ^= static_cast<std::uint8_t>(1 + input.below(255));
+    decodes(payload, decoded, frames, columns, parameters);
+  } catch (const std::invalid_argument&) {  // the parents are no tree
+  }
+  return 0;
+}

@@ -1,0 +1,128 @@
+// Functions of additions, multiplications, divisions and square roots alone, so that every machine
+// gives the same bits. Logarithm and exponential are as good as the models need that use them, to
+// about 1e-4; the trigonometric ones are good to about 1e-14.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "numbers/lanes.hpp"
+
+namespace mocapress::exact {
+
+inline constexpr double kLn2 = 0.6931471805599453;
+
+// Natural logarithm of a normal, positive number.
+inline double natural_log(double value) {
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const auto exponent = static_cast<std::int64_t>(bits >> 52) - 1023;
+  const auto mantissa = std::bit_cast<double>((bits & 0xfffffffffffff) | 0x3ff0000000000000);
+  const double x = mantissa - 1;  // 0 <= x < 1
+  const double series =
+      x * (1.441949 + x * (-0.7091 + x * (0.415023 + x * (-0.192401 + x * 0.044529))));
+  return (static_cast<double>(exponent) + series) * kLn2;
+}
+
+// The same of eight.
+MOCAPRESS_IN_PLACE Block natural_log(Block values) {
+  using Bits = std::uint64_t __attribute__((vector_size(sizeof(Block))));
+  const Bits bits = std::bit_cast<Bits>(values);
+  // A whole number below 2^52 in the lowest bits of 2^52 as a double.
+  const Block exponents =
+      (std::bit_cast<Block>((bits >> 52) | 0x4330000000000000) - 4503599627370496.0) - 1023.0;
+  const Block x = std::bit_cast<Block>((bits & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
+  const Block series =
+      x * (1.441949 + x * (-0.7091 + x * (0.415023 + x * (-0.192401 + x * 0.044529))));
+  return (exponents + series) * kLn2;
+}
+
+// e^value for -700 <= value <= 700.
+inline double natural_exp(double value) {
+  const double power = value * (1 / kLn2) + 1100;
+  const auto whole = static_cast<std::int64_t>(power);
+  const double x = power - static_cast<double>(whole);  // 0 <= x < 1
+  const double series = 1 + x * (0.692996 + x * (0.241566 + x * (0.051752 + x * 0.013686)));
+  return series * std::bit_cast<double>(static_cast<std::uint64_t>(whole - 1100 + 1023) << 52);
+}
+
+struct SineCosine {
+  double sine, cosine;
+};
+
+// Of an angle in radians; of 0 where it is beyond 1e6 or no number.
+inline SineCosine sine_cosine(double angle) {
+  if (!(std::fabs(angle) <= 1e6)) angle = 0;
+  constexpr double kHalfPi = 1.5707963267948966;
+  constexpr double kHalfPiRest = 6.123233995736766e-17;
+  const double turns = angle * (1 / kHalfPi);
+  const auto quarter = static_cast<std::int64_t>(turns + (turns < 0 ? -0.5 : 0.5));
+  const auto whole = static_cast<double>(quarter);
+  const double x = (angle - whole * kHalfPi) - whole * kHalfPiRest;  // |x| <= pi / 4
+  const double q = x * x;
+  const double sine =
+      x * (1 - q * (1.0 / 6) *
+                   (1 - q * (1.0 / 20) *
+                            (1 - q * (1.0 / 42) *
+                                     (1 - q * (1.0 / 72) *
+                                              (1 - q * (1.0 / 110) * (1 - q * (1.0 / 156)))))));
+  const double cosine =
+      1 - q * (1.0 / 2) *
+              (1 - q * (1.0 / 12) *
+                       (1 - q * (1.0 / 30) *
+                                (1 - q * (1.0 / 56) *
+                                         (1 - q * (1.0 / 90) *
+                                                  (1 - q * (1.0 / 132) * (1 - q * (1.0 / 182)))))));
+  switch (quarter & 3) {
+    case 0:
+      return {sine, cosine};
+    case 1:
+      return {cosine, -sine};
+    case 2:
+      return {-sine, -cosine};
+    default:
+      return {-cosine, sine};
+  }
+}
+
+// The angle of (x, y), in radians; 0 of (0, 0).
+inline double arc_tangent(double y, double x) {
+  constexpr double kPi = 3.141592653589793;
+  // atan(k / 8)
+  constexpr double kEighths[] = {0,
+                                 0.12435499454676144,
+                                 0.24497866312686414,
+                                 0.3587706702705722,
+                                 0.4636476090008061,
+                                 0.5585993153435624,
+                                 0.6435011087932844,
+                                 0.7188299996216245,
+                                 0.7853981633974483};
+  const double up = std::fabs(y);
+  const double along = std::fabs(x);
+  const bool steep = up > along;
+  const double low = steep ? along : up;
+  const double high = steep ? up : along;
+  if (!(high > 0)) return 0;
+  const double ratio = low / high;
+  const auto eighth = static_cast<int>(ratio * 8 + 0.5);
+  const double near = eighth / 8.0;
+  const double t = (ratio - near) / (1 + ratio * near);  // |t| <= 1 / 16
+  const double q = t * t;
+  const double rest =
+      t *
+      (1 - q * (1.0 / 3 -
+                q * (1.0 / 5 - q * (1.0 / 7 - q * (1.0 / 9 - q * (1.0 / 11 - q * (1.0 / 13)))))));
+  double angle = kEighths[eighth] + rest;
+  if (steep) angle = kPi / 2 - angle;
+  if (x < 0) angle = kPi - angle;
+  return y < 0 ? -angle : angle;
+}
+
+// In radians, of a sine that is cut to -1 to 1.
+inline double arc_sine(double sine) {
+  const double cut = sine > 1 ? 1 : sine < -1 ? -1 : sine;
+  return arc_tangent(cut, std::sqrt((1 - cut) * (1 + cut)));
+}
+
+}  // namespace mocapress::exact

@@ -1,0 +1,91 @@
+#include "numbers/coarsest_line.hpp"
+
+#include <cmath>
+#include <optional>
+
+namespace mocapress {
+namespace {
+
+constexpr std::size_t kStrays = 64;
+constexpr std::size_t kSample = 256;  // rows
+constexpr double kTie = 1e-3;
+constexpr double kTelling = 30;  // chance would need e^30 tries to look like this
+constexpr int kMostDecimals = 15;
+constexpr int kMostSignificant = 15;
+
+struct ColumnView {
+  const double* values;
+  std::size_t rows;
+  std::size_t stride;
+
+  double operator[](std::size_t row) const { return values[row * stride]; }
+};
+
+bool holds(const NumberLine& line, const ColumnView& column) {
+  const std::size_t most = column.rows / kStrays;
+  std::size_t strays = 0;
+  for (std::size_t row = 0; row < column.rows; ++row) {
+    const double value = column[row];
+    if (!line.holds(value, line.place(value)) && ++strays > most) return false;
+  }
+  return true;
+}
+
+std::optional<int> fewest(Line line, int from, int to, const ColumnView& column) {
+  for (int digits = from; digits <= to; ++digits) {
+    if (holds(NumberLine(line, digits), column)) return digits;
+  }
+  return std::nullopt;
+}
+
+// Distances of neighbours in some of the rows, on a logarithmic scale.
+double coarseness(const NumberLine& line, const ColumnView& column) {
+  double sum = 0;
+  for (std::size_t row = 0; row < column.rows; row += column.rows / kSample + 1) {
+    const double step = line.step(column[row]);
+    sum += step > 0 ? std::log(step) : 0;
+  }
+  return sum;
+}
+
+// How decimals came about, where many of them say so.
+LineOf printed_line(int decimals, const ColumnView& column) {
+  const double plain = coarseness({Line::decimals, decimals}, column);
+  for (const Line line : {Line::printed32, Line::degrees32}) {
+    const NumberLine printed(line, decimals);
+    if (coarseness(printed, column) > plain + kTelling && holds(printed, column)) {
+      return {line, decimals};
+    }
+  }
+  return {Line::decimals, decimals};
+}
+
+LineOf coarsest_line(const ColumnView& column) {
+  const auto decimals = fewest(Line::decimals, 0, kMostDecimals, column);
+  const auto significant = fewest(Line::significant, 1, kMostSignificant, column);
+  if (decimals && significant) {
+    const double gain = coarseness({Line::decimals, *decimals}, column) -
+                        coarseness({Line::significant, *significant}, column);
+    const bool fixed = gain > kTie;
+    return fixed ? printed_line(*decimals, column) : LineOf{Line::significant, *significant};
+  }
+  if (decimals) return printed_line(*decimals, column);
+  if (holds({Line::float32, 0}, column)) return {Line::float32, 0};
+  // Nine digits and more may be how float32 was printed.
+  if ((!significant || *significant >= 7) && holds({Line::shortest32, 0}, column)) {
+    return {Line::shortest32, 0};
+  }
+  if (significant) return {Line::significant, *significant};
+  return {Line::float64, 0};
+}
+
+}  // namespace
+
+std::vector<LineOf> coarsest_lines(const double* values, std::size_t rows, std::size_t columns) {
+  std::vector<LineOf> lines;
+  for (std::size_t c = 0; c < columns; ++c)
+    lines.push_back(coarsest_line({values + c, rows, columns}));
+  return lines;
+}
+
+}  // namespace mocapress

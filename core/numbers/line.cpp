@@ -1,0 +1,246 @@
+#include "numbers/line.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "numbers/snap.hpp"
+
+namespace mocapress {
+namespace {
+
+constexpr int kMostDecimals = 22;     // 10^22 is the last power of ten that a double holds exactly
+constexpr int kMostSignificant = 15;  // every number of 15 digits has a double of its own
+constexpr double kWhole = 4503599627370496.0;  // 2^52
+constexpr int kMostExponent = 300;
+constexpr double kDegrees = 57.29577951308232;  // in a radian
+constexpr std::int64_t kInfinity = 0x7f800000;  // its bits
+constexpr std::int64_t kFarthest = std::int64_t{1} << 62;
+
+constexpr int kPowers = NumberLine::kHighestExponent - NumberLine::kLowestExponent + 1;
+
+// Correctly rounded, every one.
+std::array<double, kPowers> make_powers() {
+  std::array<double, kPowers> powers{};
+  for (int i = 0; i < kPowers; ++i) {
+    std::array<char, 8> text{'1', 'e'};
+    const auto end =
+        std::to_chars(text.data() + 2, text.data() + text.size(), i + NumberLine::kLowestExponent);
+    std::from_chars(text.data(), end.ptr, powers[static_cast<std::size_t>(i)]);
+  }
+  return powers;
+}
+
+const std::array<double, kPowers> kPowersOfTen = make_powers();
+
+// To the nearest whole number, ties to even, for 0 <= value < 2^51: no libm, no rounding mode.
+double rounded(double value) {
+  constexpr double shift = 1.5 * kWhole;
+  return (value + shift) - shift;
+}
+
+// Every bit pattern in the order of the numbers, -0 before 0.
+template <class Integer, class Bits>
+std::int64_t ordered(Bits bits) {
+  const auto number = static_cast<Integer>(bits);
+  constexpr auto lowest = std::numeric_limits<Integer>::min();
+  return number >= 0 ? number : static_cast<Integer>(-1 - (number - lowest));
+}
+
+template <class Integer, class Bits>
+Bits unordered(std::int64_t place) {
+  constexpr auto lowest = std::numeric_limits<Integer>::min();
+  const auto number = static_cast<Integer>(place);
+  return static_cast<Bits>(number >= 0 ? number : static_cast<Integer>(lowest + (-1 - number)));
+}
+
+std::int64_t place32(float number) {
+  return ordered<std::int32_t>(std::bit_cast<std::uint32_t>(number));
+}
+
+float number32(std::int64_t place) {
+  return std::bit_cast<float>(unordered<std::int32_t, std::uint32_t>(place));
+}
+
+// Out of the range of a float is undefined as a conversion, and on no float32 line.
+float narrowed(double number) {
+  constexpr double most = std::numeric_limits<float>::max();
+  if (number > most) return std::numeric_limits<float>::infinity();
+  if (number < -most) return -std::numeric_limits<float>::infinity();
+  return static_cast<float>(number);
+}
+
+}  // namespace
+
+bool line_exists(int line, int digits) {
+  switch (static_cast<Line>(line)) {
+    case Line::float64:
+    case Line::float32:
+    case Line::shortest32:
+      return true;
+    case Line::significant:
+      return digits >= 1 && digits <= kMostSignificant;
+    case Line::decimals:
+    case Line::printed32:
+    case Line::degrees32:
+      return digits >= 0 && digits <= kMostDecimals;
+  }
+  return false;
+}
+
+NumberLine::NumberLine(Line line, int digits) : line_(line), digits_(digits) {
+  if (line == Line::significant) {
+    per_decade_ = 9;
+    for (int i = 1; i < digits; ++i) per_decade_ *= 10;
+  }
+  if (line == Line::decimals || printed()) scale_ = power_of_ten(digits);
+  if (!printed()) return;
+  if (line == Line::degrees32) unit_ = kDegrees;
+  float coarse = 0x1p-126f;
+  while (coarse * 0x1p-23 * unit_ * scale_ <= 1) coarse *= 2;
+  coarse_bits_ = std::bit_cast<std::int32_t>(coarse);
+  coarse_place_ = decimal_place(coarse * unit_);
+}
+
+std::int64_t NumberLine::decimal_place(double magnitude) const {
+  const double scaled = magnitude * scale_;
+  return scaled < kWhole / 2 ? static_cast<std::int64_t>(rounded(scaled)) : kFarthest;  // NaN, too
+}
+
+// As decimals count, and from the first coarse float on as floats do.
+std::int64_t NumberLine::printed_place(double magnitude) const {
+  const std::int64_t place = decimal_place(magnitude);
+  if (place < coarse_place_) return place;
+  const float number = narrowed(magnitude / unit_);
+  const std::int64_t bits = std::bit_cast<std::int32_t>(number);
+  return coarse_place_ + std::clamp(bits, coarse_bits_, kInfinity) - coarse_bits_;
+}
+
+double NumberLine::printed_number(std::int64_t place) const {
+  if (place < coarse_place_) return static_cast<double>(place) / scale_;
+  const auto bits = std::min(place - coarse_place_, kInfinity - coarse_bits_) + coarse_bits_;
+  const double number = std::bit_cast<float>(static_cast<std::int32_t>(bits));
+  return rounded(number * unit_ * scale_) / scale_;
+}
+
+double NumberLine::power_of_ten(int exponent) {
+  return kPowersOfTen[static_cast<std::size_t>(exponent - kLowestExponent)];
+}
+
+int NumberLine::decimal_exponent(double magnitude) {
+  const int binary = static_cast<int>(std::bit_cast<std::uint64_t>(magnitude) >> 52) - 1023;
+  const int exponent = (binary * 78913) >> 18;  // floor(binary * log10(2))
+  if (exponent >= kHighestExponent) return kHighestExponent;
+  if (exponent + 1 <= kLowestExponent) return kLowestExponent;
+  return exponent + (magnitude >= power_of_ten(exponent + 1) ? 1 : 0);
+}
+
+std::int64_t NumberLine::decade(int exponent) const {
+  return std::int64_t{exponent - kLowestExponent} * per_decade_ + 1;
+}
+
+// On the line of significant digits: 0, then decade by decade d.ddd x 10^exponent.
+std::int64_t NumberLine::magnitude_place(double magnitude) const {
+  if (line_ == Line::decimals) return decimal_place(magnitude);
+  if (printed()) return printed_place(magnitude);
+  if (magnitude < power_of_ten(kLowestExponent)) return 0;  // denormals are off this line
+  if (!(magnitude < power_of_ten(kMostExponent))) return decade(kMostExponent);
+  const int exponent = decimal_exponent(magnitude);
+  const int decimals = digits_ - 1 - exponent;
+  double scaled;
+  if (decimals > kHighestExponent) {
+    scaled =
+        (magnitude * power_of_ten(kHighestExponent)) * power_of_ten(decimals - kHighestExponent);
+  } else if (decimals >= 0) {
+    scaled = magnitude * power_of_ten(decimals);
+  } else {
+    scaled = magnitude / power_of_ten(-decimals);
+  }
+  return decade(exponent) + static_cast<std::int64_t>(rounded(scaled)) - per_decade_ / 9;
+}
+
+double NumberLine::magnitude_number(std::int64_t place) const {
+  if (line_ == Line::decimals) return static_cast<double>(place) / scale_;
+  if (printed()) return printed_number(place);
+  if (place == 0) return 0;
+  const std::int64_t exponent = (place - 1) / per_decade_ + kLowestExponent;
+  if (exponent > kHighestExponent) return std::numeric_limits<double>::infinity();
+  const std::int64_t digits = (place - 1) % per_decade_ + per_decade_ / 9;
+  const auto decimals = digits_ - 1 - static_cast<int>(exponent);
+  const auto number = static_cast<double>(digits);
+  if (decimals >= 0 && decimals <= kMostDecimals) return number / power_of_ten(decimals);
+  if (decimals < 0 && decimals >= -kMostDecimals) return number * power_of_ten(-decimals);
+  // Such a power of ten is not exact; text is.
+  std::array<char, 40> text{};
+  char* const last = text.data() + text.size();
+  char* end = std::to_chars(text.data(), last - 8, digits).ptr;
+  *end++ = 'e';
+  end = std::to_chars(end, last, -decimals).ptr;
+  double exact = 0;
+  std::from_chars(text.data(), end, exact);
+  return exact;
+}
+
+std::int64_t NumberLine::place(double number) const {
+  switch (line_) {
+    case Line::float64:
+      return ordered<std::int64_t>(std::bit_cast<std::uint64_t>(number));
+    case Line::float32:
+    case Line::shortest32:
+      return place32(narrowed(number));
+    default: {
+      const std::int64_t place = magnitude_place(std::fabs(number));
+      return std::signbit(number) ? -1 - place : place;
+    }
+  }
+}
+
+double NumberLine::number(std::int64_t place) const {
+  switch (line_) {
+    case Line::float64:
+      return std::bit_cast<double>(unordered<std::int64_t, std::uint64_t>(place));
+    case Line::float32:
+      return number32(place);
+    case Line::shortest32:
+      return snap(number32(place), Grid::shortest32, 0);
+    default:
+      return place >= 0 ? magnitude_number(place) : -magnitude_number(-1 - place);
+  }
+}
+
+std::int64_t NumberLine::near(double number) const {
+  switch (line_) {
+    case Line::float64:
+    case Line::float32:
+    case Line::shortest32:
+      return place(number + 0.0);  // not -0
+    default:
+      return number > 0 ? magnitude_place(number) : -1 - magnitude_place(-number);
+  }
+}
+
+double NumberLine::step(double value) const {
+  const double magnitude = std::fabs(value);
+  switch (line_) {
+    case Line::float64:
+      return magnitude * 0x1p-52;
+    case Line::float32:
+    case Line::shortest32:
+      return magnitude * 0x1p-23;
+    case Line::decimals:
+      return 1 / scale_;
+    case Line::printed32:
+    case Line::degrees32:
+      return std::max(1 / scale_, magnitude * 0x1p-23);
+    default: {
+      if (!(magnitude >= 1e-290)) return 1e-300;
+      const int exponent = decimal_exponent(magnitude) - digits_ + 1;
+      return power_of_ten(exponent);
+    }
+  }
+}
+
+}  // namespace mocapress

@@ -1,0 +1,202 @@
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "exact/codec.hpp"
+#include "exact/expert.hpp"
+#include "exact/joint.hpp"
+#include "exact/kinematics.hpp"
+#include "exact/law.hpp"
+#include "numbers/coarsest_line.hpp"
+#include "python/bindings.hpp"
+
+namespace mocapress {
+namespace {
+
+namespace nb = nanobind;
+
+using Matrix = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Output = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+// (C, 6): line, digits, noise, exponent, turns, place
+using Plan = nb::ndarray<const std::int32_t, nb::shape<-1, 6>, nb::c_contig, nb::device::cpu>;
+using Couplings = std::vector<
+    std::tuple<int, std::vector<std::uint16_t>, std::vector<std::uint16_t>, std::vector<double>>>;
+
+std::vector<exact::Column> columns_of(const Plan& plan, std::size_t count) {
+  if (plan.shape(0) != count) throw std::invalid_argument("the plan is not for these columns");
+  std::vector<exact::Column> columns(count);
+  for (std::size_t c = 0; c < count; ++c) {
+    const std::int32_t* row = plan.data() + 6 * c;
+    if (!line_exists(row[0], row[1])) throw std::invalid_argument("a line of unknown kind");
+    columns[c] = {static_cast<Line>(row[0]), row[1], row[2] != 0, row[3], row[4], row[5]};
+  }
+  return columns;
+}
+
+bool has_shape(int kind, std::size_t sources, std::size_t targets,
+               const std::vector<double>& parameters) {
+  if (kind == exact::Joint::kKind) return targets == 1 && exact::Joint::exists(sources, parameters);
+  if (kind < 0 || kind > static_cast<int>(exact::LawKind::neck_middle)) return false;
+  const auto law = static_cast<exact::LawKind>(kind);
+  return kind == 0 || (sources == exact::Law::sources(law) && targets == exact::Law::targets(law));
+}
+
+// The compiled coder relies on what is checked here.
+std::vector<exact::Coupling> couplings_of(const Couplings& told,
+                                          const std::vector<exact::Column>& columns) {
+  constexpr std::size_t most = 16;
+  std::vector<exact::Coupling> couplings;
+  std::vector<bool> taken(columns.size());
+  for (const auto& [kind, sources, targets, parameters] : told) {
+    if (sources.empty() || targets.empty() || sources.size() > most || targets.size() > most ||
+        !has_shape(kind, sources.size(), targets.size(), parameters)) {
+      throw std::invalid_argument("a coupling of unknown shape");
+    }
+    for (const auto column : sources) {
+      if (column >= targets.front()) throw std::invalid_argument("a coupling to later columns");
+    }
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      if (targets[i] >= columns.size() || columns[targets[i]].noise || taken[targets[i]] ||
+          (i > 0 && targets[i] <= targets[i - 1])) {
+        throw std::invalid_argument("a coupling of columns that are not there");
+      }
+      if (kind != 0) taken[targets[i]] = true;
+    }
+    couplings.push_back({kind, sources, targets, parameters});
+  }
+  return couplings;
+}
+
+// The arguments that say how a clip is coded, and what they refer to.
+struct Told {
+  Told(const Plan& plan, std::size_t count, const Couplings& told, int level, exact::Start start)
+      : columns(columns_of(plan, count)),
+        couplings(couplings_of(told, columns)),
+        start(checked(std::move(start))),
+        clip{columns, couplings, level, this->start} {}
+
+  Told(const Told&) = delete;
+
+  static exact::Start checked(exact::Start start) {
+    const auto unusable = [](float value) { return !(std::fabs(value) < 1e30f); };
+    bool found = std::ranges::any_of(start.shared, unusable);
+    for (const auto& column : start.columns) found |= std::ranges::any_of(column, unusable);
+    if (found) throw std::invalid_argument("a start of numbers that were not learned");
+    return start;
+  }
+
+  std::vector<exact::Column> columns;
+  std::vector<exact::Coupling> couplings;
+  exact::Start start;
+  exact::Clip clip;
+};
+
+using Learned = std::pair<std::vector<float>, std::vector<std::vector<float>>>;
+
+auto encode(const Matrix& values, const Plan& plan, const Couplings& couplings, int level,
+            Learned start, bool learn) {
+  const Told arguments(plan, values.shape(1), couplings, level,
+                       {std::move(start.first), std::move(start.second)});
+  Bytes payload;
+  exact::Start learned;
+  {
+    nb::gil_scoped_release unlocked;
+    payload =
+        exact::encode(values.data(), values.shape(0), arguments.clip, learn ? &learned : nullptr);
+  }
+  return nb::make_tuple(nb::bytes(payload.data(), payload.size()),
+                        Learned(std::move(learned.shared), std::move(learned.columns)));
+}
+
+void decode(const nb::bytes& payload, const Output& values, const Plan& plan,
+            const Couplings& couplings, int level, Learned start) {
+  const Told arguments(plan, values.shape(1), couplings, level,
+                       {std::move(start.first), std::move(start.second)});
+  const ByteView bytes{static_cast<const std::uint8_t*>(payload.data()), payload.size()};
+  nb::gil_scoped_release unlocked;
+  exact::decode(bytes, values.data(), values.shape(0), arguments.clip);
+}
+
+std::vector<std::pair<int, int>> lines(const Matrix& values) {
+  std::vector<std::pair<int, int>> found;
+  nb::gil_scoped_release unlocked;
+  for (const auto& line : coarsest_lines(values.data(), values.shape(0), values.shape(1))) {
+    found.emplace_back(static_cast<int>(line.line), line.digits);
+  }
+  return found;
+}
+
+// What a law has for the targets, (F, T) degrees, where they are known; `columns` are sources,
+// targets.
+auto law(int kind, const Matrix& columns) {
+  if (kind < 1 || kind > static_cast<int>(exact::LawKind::neck_middle) ||
+      kind == exact::Joint::kKind) {
+    throw std::invalid_argument("a law of unknown kind");
+  }
+  const auto named = static_cast<exact::LawKind>(kind);
+  const std::size_t sources = exact::Law::sources(named);
+  const std::size_t targets = exact::Law::targets(named);
+  if (columns.shape(1) != sources + targets) {
+    throw std::invalid_argument("not the columns of this law");
+  }
+  const std::size_t rows = columns.shape(0);
+  auto* told = new double[rows * targets];
+  const nb::capsule owner(told, [](void* data) noexcept { delete[] static_cast<double*>(data); });
+  exact::Law found(named);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double* angles = columns.data() + row * columns.shape(1);
+    found.begin(angles);
+    for (std::size_t t = 0; t < targets; ++t) {
+      told[row * targets + t] = found.predict(t, angles + sources);
+    }
+  }
+  return nb::ndarray<nb::numpy, double, nb::ndim<2>>(told, {rows, targets}, owner);
+}
+
+// The second differences, (F, C), that the skeleton's geometry has for channels at these places of
+// it, where the rows before each, and the channels before it in its own, are known; before the
+// first row it was as it is there.
+auto guesses(const Matrix& values, const std::vector<int>& places) {
+  const std::size_t count = values.shape(1);
+  if (places.size() != count) throw std::invalid_argument("not one place per column");
+  std::vector<exact::Column> columns;
+  for (const int place : places) columns.push_back({Line::float64, 0, false, 0, 0, place});
+  exact::Kinematics kinematics(columns);
+  exact::Frames frames(count);
+  const std::size_t rows = values.shape(0);
+  auto* told = new double[rows * count]();
+  const nb::capsule owner(told, [](void* data) noexcept { delete[] static_cast<double*>(data); });
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double* numbers = values.data() + row * count;
+    for (int age = 0; row == 0 && age < exact::Frames::kKept; ++age) {
+      frames.next();
+      for (std::size_t c = 0; c < count; ++c) frames.set(c, numbers[c]);
+    }
+    frames.next();
+    kinematics.begin(frames);
+    for (std::size_t c = 0; c < count; ++c) {
+      told[row * count + c] = kinematics.guess(c, frames);
+      frames.set(c, numbers[c]);
+    }
+  }
+  return nb::ndarray<nb::numpy, double, nb::ndim<2>>(told, {rows, count}, owner);
+}
+
+}  // namespace
+
+void bind_exact(nb::module_& module) {
+  module.def("exact_encode", &encode);
+  module.def("exact_decode", &decode);
+  module.def("exact_lines", &lines);
+  module.def("exact_law", &law);
+  module.def("exact_guesses", &guesses);
+}
+
+}  // namespace mocapress

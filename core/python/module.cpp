@@ -1,0 +1,9 @@
+// The extension module mocapress._core.
+#include "python/bindings.hpp"
+
+NB_MODULE(_core, module) {
+  mocapress::bind_rows(module);
+  mocapress::bind_app(module);
+  mocapress::bind_exact(module);
+  mocapress::bind_diffma(module);
+}

@@ -1,0 +1,124 @@
+import { rangeOf, short, trace } from "./curve.js";
+import { element, fittedContext, themeColour } from "./element.js";
+
+/** The plot over time at the foot of the page; to drag over it is to scrub. */
+export class Timeline {
+  /**
+   * @param {HTMLElement} slider holds the canvas
+   * @param {import("../state/player.js").Player} player
+   */
+  constructor(slider, player) {
+    this.slider = slider;
+    this.player = player;
+    this.canvas = slider.querySelector("canvas");
+    this.tip = element("div", { className: "tip", hidden: true });
+    slider.append(this.tip);
+    this.curves = [];
+    this.label = "";
+    this.#listen();
+    new ResizeObserver(() => this.#redraw()).observe(this.canvas);
+    player.addEventListener("change", () => this.draw());
+  }
+
+  /**
+   * @param {string} label what is plotted: "error"
+   * @param {{values: Float32Array, colour: string, fill?: boolean}[]} curves colours of the theme
+   * @param {(value: number) => string} [text] of a value
+   */
+  plot(label, curves, text = short) {
+    this.label = label;
+    this.curves = curves;
+    this.text = text;
+    this.#redraw();
+  }
+
+  draw() {
+    const { player } = this;
+    if (!this.curvesDrawn) this.#drawCurves();
+    const { context, width, height } = fittedContext(this.canvas);
+    if (this.curvesDrawn.width) context.drawImage(this.curvesDrawn, 0, 0, width, height);
+    const x = this.#xOf(player.frame, width);
+    context.fillStyle = themeColour("--ink");
+    context.fillRect(x - 0.75, 0, 1.5, height);
+    context.beginPath();
+    context.arc(x, 5, 4.5, 0, 2 * Math.PI);
+    context.fill();
+    this.slider.setAttribute("aria-valuenow", String(player.frame));
+    this.slider.setAttribute("aria-valuemax", String(player.frames - 1));
+  }
+
+  #redraw() {
+    this.curvesDrawn = null;
+    this.draw();
+  }
+
+  /** The curves change seldom; they are drawn once, beside the page. */
+  #drawCurves() {
+    const made = document.createElement("canvas");
+    const ratio = Math.min(2, window.devicePixelRatio);
+    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    made.width = Math.round(width * ratio);
+    made.height = Math.round(height * ratio);
+    this.curvesDrawn = made;
+    const context = made.getContext("2d");
+    if (!context || !width) return;
+    context.scale(ratio, ratio);
+    const high = Math.max(...this.curves.map(({ values }) => rangeOf(values)[1]), 0);
+    const box = { left: 5, top: 8, width: width - 10, height: height - 10 };
+    context.fillStyle = themeColour("--line");
+    context.fillRect(5, height - 2, width - 10, 1);
+    for (const { values, colour, fill } of this.curves) {
+      trace(context, values, box, [0, high]);
+      context.lineJoin = "round";
+      context.lineWidth = 1.25;
+      context.strokeStyle = themeColour(colour);
+      context.stroke();
+      if (!fill) continue;
+      context.lineTo(box.left + box.width, height - 2);
+      context.lineTo(box.left, height - 2);
+      context.globalAlpha = 0.16;
+      context.fillStyle = themeColour(colour);
+      context.fill();
+      context.globalAlpha = 1;
+    }
+  }
+
+  #listen() {
+    const { slider, player } = this;
+    const frameOf = (event) => {
+      const box = this.canvas.getBoundingClientRect();
+      const share = (event.clientX - box.left - 5) / Math.max(1, box.width - 10);
+      return Math.min(1, Math.max(0, share)) * (player.frames - 1);
+    };
+    slider.addEventListener("pointerdown", (event) => {
+      slider.setPointerCapture(event.pointerId);
+      this.resume = player.playing;
+      player.play(false);
+      player.seek(frameOf(event));
+    });
+    slider.addEventListener("pointermove", (event) => {
+      if (slider.hasPointerCapture(event.pointerId)) player.seek(frameOf(event));
+      this.#showTip(Math.round(frameOf(event)));
+    });
+    slider.addEventListener("pointerup", (event) => {
+      if (this.resume) player.play(true);
+      if (event.pointerType !== "mouse") this.tip.hidden = true;
+    });
+    slider.addEventListener("pointerleave", () => (this.tip.hidden = true));
+  }
+
+  #showTip(frame) {
+    const [curve] = this.curves;
+    this.tip.hidden = !curve;
+    if (!curve || frame >= curve.values.length) return;
+    this.tip.textContent = `${frame + 1} · ${this.label} ${this.text(curve.values[frame])}`;
+    const width = this.canvas.clientWidth;
+    const half = this.tip.offsetWidth / 2;
+    const x = Math.min(width - half, Math.max(half, this.#xOf(frame, width)));
+    this.tip.style.left = `${x}px`;
+  }
+
+  #xOf(frame, width) {
+    return 5 + (frame / Math.max(1, this.player.frames - 1)) * (width - 10);
+  }
+}
