@@ -19,7 +19,8 @@ void judge(const Block* values, const Block* means, const Block* scales, const B
   for (std::size_t b = 0; b < blocks; ++b, near += stride) {
     const Block error = ((values[b] - means[b]) - guesses[b]) / scales[b];
     const Block square = error * error;
-    errors[b] += kErrorRate * ((square > kMostSquared ? kMostSquared + Block{} : square) - errors[b]);
+    errors[b] +=
+        kErrorRate * ((square > kMostSquared ? kMostSquared + Block{} : square) - errors[b]);
     // A wild value moves the weights no further than the farthest one that is likely.
     Block cut = error < -kFarthest ? -kFarthest + Block{} : error;
     cut = cut > kFarthest ? kFarthest + Block{} : cut;

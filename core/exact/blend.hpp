@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "numbers/lanes.hpp"
 #include "exact/parallel_chains.hpp"
+#include "numbers/lanes.hpp"
 
 namespace mocapress::exact {
 

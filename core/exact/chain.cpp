@@ -1,44 +1,41 @@
 #include "exact/chain.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "numbers/vector_clones.hpp"
 
 namespace mocapress::exact {
 namespace {
 
-constexpr double kTiny = 1e-13;        // keeps the gain of a variable that never moves finite
-constexpr std::size_t kTogether = 4;   // chains that learn side by side
+constexpr double kTiny = 1e-13;       // keeps the gain of a variable that never moves finite
+constexpr std::size_t kTogether = 4;  // chains that learn side by side
 
 // One chain's part of a step.
 struct Rows {
+  std::size_t size;
+  double fading;
   Block* column;  // of the triangle
   double* diagonal;
   Block* rest;
   double alpha;
 };
 
-// kCount chains of equal size: while one waits for its division, the others go on.
-template <std::size_t kCount>
-inline void update_any(Rows* chains, std::size_t size, double fading) {
-  const std::size_t blocks = blocks_of(size);
-  for (std::size_t j = 0; j < size; ++j) {
-    const std::size_t first = j / kLanes;
-    for (std::size_t k = 0; k < kCount; ++k) {
-      Rows& chain = chains[k];
-      const double p = chain.rest[first][j % kLanes];
-      const double faded = fading * chain.diagonal[j];
-      const double grown = faded + chain.alpha * (p * p);
-      const double gain = chain.alpha * p / (grown + kTiny);
-      chain.alpha = chain.alpha * (faded + kTiny) / (grown + kTiny);
-      chain.diagonal[j] = grown;
-      chain.rest[first][j % kLanes] = 0;  // so that nothing is added up to row j
-      for (std::size_t b = first; b < blocks; ++b) {
-        const Block left = chain.rest[b] - p * *chain.column;
-        chain.rest[b] = left;
-        *chain.column++ += gain * left;
-      }
-    }
+// Step j of a chain.
+MOCAPRESS_IN_PLACE void step(Rows& chain, std::size_t j) {
+  const std::size_t first = j / kLanes;
+  const std::size_t blocks = blocks_of(chain.size);
+  const double p = chain.rest[first][j % kLanes];
+  const double faded = chain.fading * chain.diagonal[j];
+  const double grown = faded + chain.alpha * (p * p);
+  const double gain = chain.alpha * p / (grown + kTiny);
+  chain.alpha = chain.alpha * (faded + kTiny) / (grown + kTiny);
+  chain.diagonal[j] = grown;
+  chain.rest[first][j % kLanes] = 0;  // so that nothing is added up to row j
+  for (std::size_t b = first; b < blocks; ++b) {
+    const Block left = chain.rest[b] - p * *chain.column;
+    chain.rest[b] = left;
+    *chain.column++ += gain * left;
   }
 }
 
@@ -53,14 +50,12 @@ void see_run(Block* predictions, const Block* columns, std::size_t first, const 
   }
 }
 
+// While one chain waits for its division, the others go on. Longer chains come first.
 MOCAPRESS_VECTOR_CLONES
-void update_one(Rows* chains, std::size_t size, double fading) {
-  update_any<1>(chains, size, fading);
-}
-
-MOCAPRESS_VECTOR_CLONES
-void update_four(Rows* chains, std::size_t size, double fading) {
-  update_any<kTogether>(chains, size, fading);
+void update(Rows* chains, std::size_t count) {
+  for (std::size_t j = 0; j < chains[0].size; ++j) {
+    for (std::size_t k = 0; k < count && j < chains[k].size; ++k) step(chains[k], j);
+  }
 }
 
 }  // namespace
@@ -81,9 +76,7 @@ Chain::Chain(std::size_t count, double fading, double ridge)
   triangle_.resize(size);
 }
 
-void Chain::begin() {
-  std::fill_n(predictions_.blocks(), blocks_of(size_), Block{});
-}
+void Chain::begin() { std::fill_n(predictions_.blocks(), blocks_of(size_), Block{}); }
 
 void Chain::see(std::size_t first, std::span<const double> values) {
   if (values.empty()) return;
@@ -97,22 +90,18 @@ void Chain::learn(double weight) {
 }
 
 void Chain::learn_all(std::span<Chain* const> chains, std::span<const double> weights) {
-  const auto alike = [&](std::size_t i, std::size_t j) {
-    return chains[i]->size_ == chains[j]->size_ && chains[i]->fading_ == chains[j]->fading_;
-  };
   for (std::size_t i = 0; i < chains.size();) {
-    std::size_t count = 1;
-    while (count < kTogether && i + count < chains.size() && alike(i, i + count)) ++count;
-    if (count < kTogether) count = 1;
     Rows rows[kTogether];
-    for (std::size_t k = 0; k < count; ++k) {
-      Chain& chain = *chains[i + k];
+    const std::size_t count = std::min(kTogether, chains.size() - i);
+    for (std::size_t k = 0; k < count; ++k, ++i) {
+      Chain& chain = *chains[i];
       std::copy_n(chain.values_.blocks(), blocks_of(chain.size_), chain.rest_.blocks());
-      rows[k] = {chain.triangle_.data(), chain.diagonal_.data(), chain.rest_.blocks(),
-                 weights[i + k]};
+      rows[k] = {
+          chain.size_,          chain.fading_, chain.triangle_.data(), chain.diagonal_.data(),
+          chain.rest_.blocks(), weights[i]};
     }
-    (count == 1 ? update_one : update_four)(rows, chains[i]->size_, chains[i]->fading_);
-    i += count;
+    std::ranges::stable_sort(std::span(rows).first(count), std::greater(), &Rows::size);
+    update(rows, count);
   }
 }
 

@@ -37,8 +37,7 @@ class Chain {
     return values_[variable] - predictions_[variable];
   }
 
-  // Lets chains learn a frame each, in any order: those of one size and fading together, since none
-  // waits for another.
+  // Lets chains learn a frame each, several at a time, since none waits for another.
   static void learn_all(std::span<Chain* const> chains, std::span<const double> weights);
 
   template <class Visit>

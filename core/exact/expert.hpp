@@ -44,7 +44,6 @@ class Frames {
   const Lanes& row(std::size_t age) const { return rows_[age]; }
 
  private:
-
   std::array<Lanes, kKept> rows_;  // by age
   Lanes moves_;
   Lanes bends_;

@@ -1,12 +1,12 @@
-// Every channel by its own past: a chain over its last three first differences and this one, for all
-// channels at once.
+// Every channel by its own past: a chain over its last three first differences and this one, for
+// all channels at once.
 #pragma once
 
 #include <cstddef>
 
 #include "exact/expert.hpp"
-#include "numbers/lanes.hpp"
 #include "exact/parallel_chains.hpp"
+#include "numbers/lanes.hpp"
 
 namespace mocapress::exact {
 

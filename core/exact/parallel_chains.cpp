@@ -93,7 +93,10 @@ ParallelChains::ParallelChains(std::size_t chains, std::size_t size, double fadi
 }
 
 double ParallelChains::predicted(std::size_t chain) const {
-  return predicted_in_lane(blocks_.data() + chain / kLanes * stride_, size_, chain % kLanes);
+  const Block* const block = blocks_.data() + chain / kLanes * stride_;
+  const std::size_t lane = chain % kLanes;
+  // The usual one, known when this is compiled.
+  return size_ == 2 ? predicted_in_lane(block, 2, lane) : predicted_in_lane(block, size_, lane);
 }
 
 void ParallelChains::predict_all(Block* predictions) const {

@@ -18,7 +18,6 @@ struct Plans {
 };
 
 // Of the columns that are predicted.
-Plans plans(std::span<const Column> columns, std::span<const Coupling> couplings,
-                              int level);
+Plans plans(std::span<const Column> columns, std::span<const Coupling> couplings, int level);
 
 }  // namespace mocapress::exact

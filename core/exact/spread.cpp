@@ -55,6 +55,14 @@ void look_back_all(const Block* fast, const Block* middle, const Block* slow, co
   }
 }
 
+// From an error's square, in scales, to the slope of its code length, in place.
+MOCAPRESS_VECTOR_CLONES
+void slope_all(Block* squares, std::size_t blocks) {
+  for (std::size_t b = 0; b < blocks; ++b) {
+    squares[b] = bounded((kFreedom + 1) * squares[b] / (kFreedom + squares[b]) - 1, 2);
+  }
+}
+
 MOCAPRESS_VECTOR_CLONES
 void follow_slope(Block* weights, const Block* features, const Block* slopes, std::size_t blocks) {
   for (std::size_t b = 0; b < blocks; ++b) {
@@ -89,7 +97,7 @@ Spreads::Spreads(std::size_t channels)
       sums_(channels, 0),
       scales_(channels, 1),
       errors_(channels, 0),
-      slopes_(channels, 0),
+      squares_(channels, 0),
       last_(channels, 0) {
   for (std::size_t i = 0; i < kFeatures; ++i) {
     weights_[i] = Lanes(channels, kFirstWeights[i]);
@@ -110,8 +118,7 @@ void Spreads::look_back(std::size_t c, double floor) {
   const double middle = natural_log(middle_[c] + floor);
   const double fast = bounded(natural_log(fast_[c] + floor) - middle, kMostFeature);
   const double slow = bounded(natural_log(slow_[c] + floor) - middle, kMostFeature);
-  sums_[c] =
-      ((middle + weights_[kOne][c]) + weights_[kFast][c] * fast) + weights_[kSlow][c] * slow;
+  sums_[c] = ((middle + weights_[kOne][c]) + weights_[kFast][c] * fast) + weights_[kSlow][c] * slow;
   middles_[c] = middle;
   features_[kFast][c] = fast;
   features_[kSlow][c] = slow;
@@ -127,9 +134,9 @@ double Spreads::scale(std::size_t c, double disagreement, double floor) {
   const double apart = bounded(natural_log(disagreement + floor) - middles_[c], kMostFeature);
   features_[kActivity][c] = activity_;
   features_[kDisagreement][c] = apart;
-  const double sum = ((sums_[c] + weights_[kActivity][c] * activity_) +
-                      weights_[kDisagreement][c] * apart) +
-                     weights_[kLast][c] * features_[kLast][c];
+  const double sum =
+      ((sums_[c] + weights_[kActivity][c] * activity_) + weights_[kDisagreement][c] * apart) +
+      weights_[kLast][c] * features_[kLast][c];
   return scales_[c] = std::max(natural_exp(bounded(sum, 600)), 0.2 * floor);
 }
 
@@ -138,7 +145,7 @@ void Spreads::see(std::size_t c, double error) {
   if (seen_ == 0) return;
   const double relative = error / scales_[c];
   const double square = relative * relative;
-  slopes_[c] = bounded((kFreedom + 1) * square / (kFreedom + square) - 1, 2);
+  squares_[c] = square;
   last_[c] = std::clamp(natural_log(std::fabs(relative) + 0.1) + 0.5, -2.0, 3.0);
   activity_ = follow(activity_, last_[c], 0.15);
 }
@@ -146,8 +153,9 @@ void Spreads::see(std::size_t c, double error) {
 void Spreads::learn() {
   const std::size_t blocks = errors_.count_blocks();
   if (seen_ > 0) {
+    slope_all(squares_.blocks(), blocks);
     for (std::size_t i = 0; i < kFeatures; ++i) {
-      follow_slope(weights_[i].blocks(), features_[i].blocks(), slopes_.blocks(), blocks);
+      follow_slope(weights_[i].blocks(), features_[i].blocks(), squares_.blocks(), blocks);
     }
   }
   ++seen_;

@@ -45,8 +45,8 @@ class Spreads {
   Lanes sums_;                  // of the features that look back
   Lanes scales_;
   Lanes errors_;
-  Lanes slopes_;
-  Lanes last_;     // how far off the value was, against the scale
+  Lanes squares_;        // of the errors, in scales
+  Lanes last_;           // how far off the value was, against the scale
   double activity_ = 0;  // the same, a running mean over the channels one after the other
   int seen_ = 0;
 };

@@ -1,6 +1,7 @@
-// Numbers in blocks of eight: vectors of the compiler, which it splits where registers are narrower.
-// All they do is element by element, so every width gives the same bits. How a block is passed
-// depends on the instruction set, so what takes or gives one by value is always compiled in place.
+// Numbers in blocks of eight: vectors of the compiler, which it splits where registers are
+// narrower. All they do is element by element, so every width gives the same bits. How a block is
+// passed depends on the instruction set, so what takes or gives one by value is always compiled in
+// place.
 #pragma once
 
 #include <cstddef>

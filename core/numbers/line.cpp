@@ -97,6 +97,7 @@ NumberLine::NumberLine(Line line, int digits) : line_(line), digits_(digits) {
     for (int i = 1; i < digits; ++i) per_decade_ *= 10;
   }
   if (line == Line::decimals || printed()) scale_ = power_of_ten(digits);
+  step_ = 1 / scale_;
   if (!printed()) return;
   if (line == Line::degrees32) unit_ = kDegrees;
   float coarse = 0x1p-126f;
@@ -142,12 +143,30 @@ std::int64_t NumberLine::decade(int exponent) const {
   return std::int64_t{exponent - kLowestExponent} * per_decade_ + 1;
 }
 
+void NumberLine::turn_to(double magnitude) const {
+  constexpr int kFarthest = 20;
+  const int exponent = decimal_exponent(magnitude);
+  const int decimals = digits_ - 1 - exponent;
+  last_ = Decade();
+  if (exponent < -kFarthest || decimals < 0 || decimals > kMostDecimals) return;
+  last_.low = power_of_ten(exponent);
+  last_.high = power_of_ten(exponent + 1);
+  last_.scale = power_of_ten(decimals);
+  last_.step = power_of_ten(-decimals);
+  last_.first = decade(exponent);
+  last_.base = last_.first - per_decade_ / 9;
+}
+
 // On the line of significant digits: 0, then decade by decade d.ddd x 10^exponent.
 std::int64_t NumberLine::magnitude_place(double magnitude) const {
+  if (last_.holds(magnitude)) {
+    return last_.base + static_cast<std::int64_t>(rounded(magnitude * last_.scale));
+  }
   if (line_ == Line::decimals) return decimal_place(magnitude);
   if (printed()) return printed_place(magnitude);
   if (magnitude < power_of_ten(kLowestExponent)) return 0;  // denormals are off this line
   if (!(magnitude < power_of_ten(kMostExponent))) return decade(kMostExponent);
+  turn_to(magnitude);
   const int exponent = decimal_exponent(magnitude);
   const int decimals = digits_ - 1 - exponent;
   double scaled;
@@ -166,6 +185,9 @@ double NumberLine::magnitude_number(std::int64_t place) const {
   if (line_ == Line::decimals) return static_cast<double>(place) / scale_;
   if (printed()) return printed_number(place);
   if (place == 0) return 0;
+  if (place >= last_.first && place < last_.first + per_decade_ && last_.scale > 0) {
+    return static_cast<double>(place - last_.base) / last_.scale;
+  }
   const std::int64_t exponent = (place - 1) / per_decade_ + kLowestExponent;
   if (exponent > kHighestExponent) return std::numeric_limits<double>::infinity();
   const std::int64_t digits = (place - 1) % per_decade_ + per_decade_ / 9;
@@ -231,11 +253,12 @@ double NumberLine::step(double value) const {
     case Line::shortest32:
       return magnitude * 0x1p-23;
     case Line::decimals:
-      return 1 / scale_;
+      return step_;
     case Line::printed32:
     case Line::degrees32:
-      return std::max(1 / scale_, magnitude * 0x1p-23);
+      return std::max(step_, magnitude * 0x1p-23);
     default: {
+      if (last_.holds(magnitude)) return last_.step;
       if (!(magnitude >= 1e-290)) return 1e-300;
       const int exponent = decimal_exponent(magnitude) - digits_ + 1;
       return power_of_ten(exponent);
