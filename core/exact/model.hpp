@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "coding/sides.hpp"
 #include "exact/blend.hpp"
 #include "exact/choice.hpp"
 #include "exact/codec.hpp"
@@ -23,7 +24,6 @@
 #include "exact/own.hpp"
 #include "exact/plan.hpp"
 #include "exact/residual.hpp"
-#include "exact/sides.hpp"
 #include "exact/spread.hpp"
 #include "exact/turns.hpp"
 
@@ -49,11 +49,6 @@ struct Channel {
   Choice<Lawful::kPredictions + 1> choice;  // of the law's predictions and the blend
 };
 
-struct NoiseColumn {
-  NumberLine line;
-  Noise noise;
-};
-
 // What was learned is kept as floats, chances in 24 bits.
 inline float kept(double value) { return static_cast<float>(value); }
 inline float kept(std::uint16_t value) { return value; }
@@ -70,7 +65,8 @@ inline void take(std::uint32_t& value, float from) {
 class Model {
  public:
   explicit Model(const Clip& clip)
-      : count_(predicted(clip.columns)),
+      : noise_(clip.columns),
+        count_(noise_.first()),
         own_(count_),
         frames_(count_),
         spreads_(count_),
@@ -80,12 +76,8 @@ class Model {
     if (knows_skeleton(known, clip.level)) kinematics_.emplace(known);
     Plans plan = plans(known, clip.couplings, clip.level);
     for (auto& expert : plan.experts) experts_.emplace_back(std::move(expert), count_);
-    for (std::size_t c = 0; c < columns.size(); ++c) {
+    for (std::size_t c = 0; c < count_; ++c) {
       const NumberLine line(columns[c].line, columns[c].digits);
-      if (c >= count_) {
-        noise_.push_back({line, Noise()});
-        continue;
-      }
       std::vector<std::size_t> experts;
       for (std::size_t e = 0; e <= experts_.size(); ++e) {
         if (e == plan.before_own) experts.push_back(kOwn);
@@ -119,10 +111,7 @@ class Model {
   // `cut`: whether the motion begins anew, and tells nothing of how it goes on.
   template <class Side>
   void code_frame(Side& side, double* row, bool cut) {
-    for (std::size_t i = 0; i < noise_.size(); ++i) {
-      double& number = row[count_ + i];
-      number = noise_[i].noise.code(side, noise_[i].line, number);
-    }
+    noise_.code(side, row);
     frames_.next();
     if (first_ || side.chance(kNoCut, cut)) return code_first_frame(side, row);
     for (auto& expert : experts_) expert.begin();
@@ -146,7 +135,7 @@ class Model {
 
   template <class Visit>
   void visit_column(std::size_t c, Visit&& each) {
-    if (c >= count_) return noise_[c - count_].noise.visit(each);
+    if (c >= count_) return noise_.visit(c, each);
     spreads_.visit(c, each);
     channels_[c].blends->visit(channels_[c].blend, each);
     if (channels_[c].law != nullptr) channels_[c].choice.visit(each);
@@ -167,12 +156,6 @@ class Model {
       const float* next = start.columns[c].data();
       visit_column(c, [&](auto& value) { take(value, *next++); });
     }
-  }
-
-  // Columns of noise come last.
-  static std::size_t predicted(std::span<const Column> columns) {
-    const auto noise = std::ranges::find_if(columns, [](const Column& c) { return c.noise; });
-    return static_cast<std::size_t>(noise - columns.begin());
   }
 
   // Channels with equally many predictors are blended together.
@@ -276,11 +259,11 @@ class Model {
     return level == level ? sane(level) : 0;
   }
 
+  NoiseColumns noise_;
   std::size_t count_;  // columns that are predicted
   std::vector<Expert> experts_;
   OwnChains own_;
   std::vector<Channel> channels_;
-  std::vector<NoiseColumn> noise_;
   std::vector<std::unique_ptr<Lawful>> laws_;
   std::optional<Kinematics> kinematics_;
   std::vector<Blends> blends_;

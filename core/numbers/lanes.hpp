@@ -8,7 +8,7 @@
 #include <new>
 #include <vector>
 
-namespace mocapress::exact {
+namespace mocapress {
 
 inline constexpr std::size_t kLanes = 8;
 
@@ -54,4 +54,4 @@ class Lanes {
   Blocks blocks_;
 };
 
-}  // namespace mocapress::exact
+}  // namespace mocapress

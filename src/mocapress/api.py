@@ -217,14 +217,28 @@ def read(path: str | Path, *, asf_path: str | Path | None = None, strict: bool =
     return motion_files.read(path, asf_path=asf_path, strict=strict)
 
 
-def write(clip: Clip, path: str | Path, *, force: bool = False) -> None:
+def write(clip: Clip, path: str | Path, *, fps: float | None = None, force: bool = False) -> None:
     """Write a clip as AMC, BVH or (``.diffma.json``, ``.diffma.json.xz``) DiffMA JSON.
 
     The clip is converted where its columns are those of the other format. Beside an AMC its
     skeleton is written as an ASF of the same name.
 
+    Parameters
+    ----------
+    clip
+        What to write.
+    path
+        Its suffix says the format.
+    fps
+        Frames per second, instead of those of the clip. A BVH has to state its frame time: where
+        neither the clip nor ``fps`` says it, 120 are assumed, with a ``MotionWarning``.
+    force
+        Whether to replace existing files.
+
     Raises
     ------
+    ParameterError
+        When ``fps`` is no number above 0.
     ExistsError
         When a file exists and ``force`` is not given.
     UnsupportedError
@@ -232,6 +246,7 @@ def write(clip: Clip, path: str | Path, *, force: bool = False) -> None:
 
     """
     path = Path(path)
+    clip = convert.with_rate(clip, fps, needed=path.suffix.lower() == ".bvh")
     if diffma_json.is_json(b"", path.name):
         write_whole(path, diffma_json.named(path.name, diffma_json.to_json(clip)), force=force)
         return

@@ -98,7 +98,7 @@ def load(
     packed = _contents(source)
     if diffma_json.is_json(packed):
         clip = diffma_json.json_to_clip(packed)
-        return clip if frames is None else clip.with_values(clip.values[frames])
+        return clip if frames is None else clip[frames]
     mcz = parse(packed)
     skeleton = _skeleton(mcz, source, asf_path)
     if mcz.kind is Kind.BYTES:
@@ -109,14 +109,15 @@ def load(
         clip, _, problems = split(contents, kind, skeleton=skeleton)
         file = None if isinstance(source, bytes) else str(source)
         report(problems, file, strict=strict)
-        return clip if frames is None else clip.with_values(clip.values[frames])
+        return clip if frames is None else clip[frames]
     codec, _, clip = _open(mcz, skeleton)
     rows = range(mcz.frames)[frames or slice(None)]
     if not rows:
-        return clip
+        return clip[:: rows.step]
     first, last = min(rows[0], rows[-1]), max(rows[0], rows[-1]) + 1
     model = _model(mcz, codec, source, models)
-    return clip.with_values(_decode(mcz, codec, clip, first, last, model)[:: rows.step])
+    decoded = _decode(mcz, codec, clip, first, last, model)
+    return clip.with_frames(decoded, clip.frame_time)[:: rows.step]
 
 
 def _contents(source: str | Path | bytes) -> memoryview:

@@ -43,14 +43,10 @@ def convert_files(
     def work(job: Job) -> dict[str, Any]:
         place = target(job, output, rename, many=len(files) > 1)
         clip = _read(job.source, asf, given, strict=strict)
-        warning = None
-        if to == "bvh":
-            if clip.frame_time is None and fps is None:
-                warning = f"an AMC does not say its frame rate; taken as {convert.DEFAULT_FPS:g}"
-            clip = convert.to_bvh_clip(clip, fps)
-        result = {"output": str(place), "frames": clip.frames, "warning": warning}
+        clip = convert.with_rate(clip, fps, needed=to == "bvh")
+        result = {"output": str(place), "frames": clip.frames}
         if place == STREAM:
-            made = clip if to == "bvh" else convert.to_amc_clip(clip)
+            made = convert.to_bvh_clip(clip) if to == "bvh" else convert.to_amc_clip(clip)
             sys.stdout.buffer.write(format_clip(made, to))
         else:
             place.parent.mkdir(parents=True, exist_ok=True)

@@ -81,7 +81,7 @@ def to_json(
     Raises
     ------
     FormatError
-        When the source is no motion file, or a broken one.
+        When the source is not a motion file, or is broken.
     ParameterError
         When the codec is another, or has no such parameter.
 
@@ -114,7 +114,7 @@ def file_to_json(
     Raises
     ------
     FormatError
-        When it is no motion file, or a broken one.
+        When it is not a motion file, or is broken.
 
     """
     kind = sniff(data, name)
@@ -134,7 +134,7 @@ def clip_to_json(clip: Clip, codec: DiffMA, *, layout: bytes = b"") -> bytes:
     Raises
     ------
     UnsupportedError
-        When a value is no finite number, which JSON cannot hold.
+        When a value is not finite, which JSON cannot express.
     VerificationError
         When the codec fails, or what was decoded is not what was encoded.
 
@@ -212,7 +212,7 @@ def json_to_clip(data: bytes | memoryview, *, bound: float | None = None) -> Cli
         clip = columns_of(layout, document.skeleton if layout.format == "amc" else None)
         if clip.channels != len(document.names):
             raise _misfit("channels", len(document.names), clip.channels)
-        return clip.with_values(document.decode(bound))
+        return clip.with_frames(document.decode(bound), clip.frame_time)
     return Clip.of(
         document.decode(bound), _columns(document), document.frame_time, document.skeleton
     )

@@ -1,6 +1,8 @@
 """AMC: the motion of an Acclaim skeleton, one line per bone and frame."""
 
 import re
+from decimal import Decimal, InvalidOperation
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +20,12 @@ from mocapress.formats.rows import (
     unreadable,
 )
 from mocapress.motion import Clip, Skeleton
+from mocapress.motion.clip import FrameTime, short_decimal
 from mocapress.motion.columns import bone_columns
 
 # A line that holds a frame's number and nothing else.
 _COUNTER = re.compile(rb"^[ \t]*-?\d+[ \t]*\r?$", re.MULTILINE)
+_RATE = re.compile(rb"^[ \t]*:samples-per-second[ \t]+(\S+)", re.MULTILINE | re.IGNORECASE)
 _TOKEN = re.compile(rb"\S+")
 
 
@@ -80,7 +84,30 @@ def clip_of(
     radians = re.search(rb"^\s*:radians", header, re.MULTILINE | re.IGNORECASE)
     degrees = re.search(rb"^\s*:degrees", header, re.MULTILINE | re.IGNORECASE)
     angle_unit = "rad" if radians else "deg" if degrees else None
-    return Clip.of(body_values, bone_columns(skeleton, bones, angle_unit), None, skeleton, name)
+    columns = bone_columns(skeleton, bones, angle_unit)
+    return Clip.of(body_values, columns, frame_time_of(header), skeleton, name)
+
+
+def frame_time_of(header: bytes) -> Fraction | None:
+    """Give the seconds per frame that a header states, if it does and they are a time."""
+    stated = _RATE.search(header)
+    if stated is None:
+        return None
+    try:
+        rate = Decimal(stated[1].decode("latin-1"))
+    except InvalidOperation:
+        return None
+    return (
+        1 / Fraction(rate) if rate.is_finite() and abs(rate.adjusted()) < 18 and rate > 0 else None
+    )
+
+
+def format_header(frame_time: FrameTime, angle_unit: str) -> bytes:
+    """Print what stands before the frames."""
+    lines = [":FULLY-SPECIFIED", ":RADIANS" if angle_unit == "rad" else ":DEGREES"]
+    if frame_time:
+        lines.append(f":SAMPLES-PER-SECOND {short_decimal(1 / Fraction(frame_time)):f}")
+    return "\n".join(lines).encode()
 
 
 def slots_of_row(text: bytes, shape: RowShape) -> list[Slot]:

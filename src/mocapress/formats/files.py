@@ -105,7 +105,7 @@ def columns_of(layout: Layout, skeleton: Skeleton | None = None) -> Clip:
         replace(column, decimal=number_format)
         for column, number_format in zip(empty.columns, layout.formats, strict=True)
     )
-    return empty.with_columns(columns).with_values(empty.values[:0])
+    return empty.with_columns(columns)[:0]
 
 
 def read(path: str | Path, *, asf_path: str | Path | None = None, strict: bool = True) -> Clip:
@@ -169,7 +169,7 @@ def format_clip(clip: Clip, kind: str) -> bytes:
         literals = [b"", *[b" "] * (clip.channels - 1), b"\n"]
     elif kind == "amc":
         radians = any(column.unit == "rad" for column in clip.columns)
-        header = b":FULLY-SPECIFIED\n" + (b":RADIANS\n" if radians else b":DEGREES\n")
+        header = amc.format_header(clip.frame_time, "rad" if radians else "deg") + b"\n"
         literals = [b""]
         for i, column in enumerate(clip.columns):
             fresh = i == 0 or column.joint != clip.columns[i - 1].joint
