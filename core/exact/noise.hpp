@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "exact/sides.hpp"
-#include "exact/start_tables.hpp"
+#include "exact/tables.hpp"
 #include "numbers/line.hpp"
 
 namespace mocapress::exact {
@@ -27,8 +27,8 @@ class Noise {
   }
 
  private:
-  BitTree<6> kinds_{kFirstNoiseKinds};
-  BitTree<6> lengths_{kFirstNoiseLengths};
+  BitTree<6> kinds_{kFirst.noise_kinds};
+  BitTree<6> lengths_{kFirst.noise_lengths};
 };
 
 }  // namespace mocapress::exact

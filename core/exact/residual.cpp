@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "exact/start_tables.hpp"
+#include "exact/tables.hpp"
 
 namespace mocapress::exact {
 namespace {
@@ -34,7 +34,7 @@ template <class Nodes>
 Nodes first_shape() {
   Nodes nodes;
   for (std::size_t node = 1; node < kBuckets; ++node) {
-    nodes[node].of_one = std::uint32_t{kFirstShape[node]} << 16;
+    nodes[node].of_one = std::uint32_t{kFirst.shape[node]} << 16;
   }
   return nodes;
 }

@@ -14,7 +14,7 @@ from mocapress.codecs.exact.coupling import (
     read_coupling,
     write_coupling,
 )
-from mocapress.codecs.exact.skeletons import PLACES
+from mocapress.codecs.exact.skeletons import CHANNELS, CMU, NONE
 from mocapress.codecs.runs import read_runs, write_runs
 from mocapress.records import Reader, Writer
 
@@ -54,8 +54,8 @@ class Roles:
     turns: tuple[int, ...]
     """Per column: 1 or 2 for degrees from -180 or 0 on that jump by whole turns, else 0."""
     couplings: tuple[Coupling, ...]
-    places: bool
-    """Whether the columns are the channels of the skeleton that the compiled coder knows."""
+    skeleton: int
+    """The known skeleton whose channels the columns are, of skeletons.py, or NONE."""
 
     def of(self, *roles: Role) -> list[int]:
         """Give the columns of some roles, role by role."""
@@ -88,7 +88,7 @@ class Roles:
                 self.roles[c] is Role.NOISE,
                 self.exponents[c],
                 self.turns[c],
-                c if self.places else -1,
+                c if self.skeleton else -1,
             )
             for c in columns
         ]
@@ -99,7 +99,7 @@ def find_roles(
     values: NDArray[np.float64],
     couple: Callable[[list[int], Sequence[tuple[int, int]]], list[Coupling]],
     *,
-    places: bool = False,
+    skeleton: int = NONE,
 ) -> Roles:
     """Find the role of each column of (F, C) values; ``couple`` finds couplings of columns."""
     bits = values.view(np.uint64)
@@ -124,7 +124,7 @@ def find_roles(
         tuple(_exponents(values, roles)),
         tuple(_turns(values, roles)),
         tuple(arrange(predicted, couple(predicted, lines))[1]),
-        places,
+        skeleton,
     )
 
 
@@ -168,7 +168,7 @@ def write_roles(writer: Writer, roles: Roles) -> None:
     writer.integer(len(roles.couplings))
     for coupling in roles.couplings:
         write_coupling(writer, coupling)
-    writer.integer(roles.places)
+    writer.integer(roles.skeleton)
 
 
 def read_roles(reader: Reader, columns: int) -> Roles:
@@ -201,8 +201,8 @@ def read_roles(reader: Reader, columns: int) -> Roles:
     predicted = [column for column, role in enumerate(roles) if role is Role.PREDICTED]
     if arrange(predicted, couplings)[1] != couplings:
         raise reader.fail("couplings that cannot stand together")
-    places = reader.integer(1) == 1
-    if places and columns != PLACES:
+    skeleton = reader.integer(CMU)
+    if CHANNELS.get(skeleton, columns) != columns:
         raise reader.fail("the channels of a skeleton that has others")
     return Roles(
         roles,
@@ -211,5 +211,5 @@ def read_roles(reader: Reader, columns: int) -> Roles:
         tuple(exponents),
         tuple(turns for turns, _ in told),
         tuple(couplings),
-        places,
+        skeleton,
     )
