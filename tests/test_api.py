@@ -1,6 +1,5 @@
 """The Python interface as a user has it: read, write, compress, decompress, load."""
 
-import os
 import random
 import signal
 import subprocess
@@ -13,7 +12,7 @@ import pytest
 
 import mocapress as mp
 from mocapress.api import compress_bytes
-from mocapress.storage import ExistsError, write_whole
+from mocapress.storage import write_whole
 
 BROKEN = {
     "empty": b"",
@@ -163,31 +162,6 @@ def test_writing_and_reading_keeps_numbers_as_they_were(samples: Path, tmp_path:
     assert again.values.tobytes() == clip.values.tobytes()
     assert [c.name for c in again.columns] == [c.name for c in clip.columns]
     np.testing.assert_allclose(mp.positions(again)[::100], mp.positions(clip)[::100], atol=1e-6)
-
-
-def test_nothing_is_overwritten_unasked(tmp_path: Path) -> None:
-    file = tmp_path / "a"
-    write_whole(file, b"one")
-    with pytest.raises(ExistsError):
-        write_whole(file, b"two")
-    assert file.read_bytes() == b"one"
-    write_whole(file, b"two", force=True)
-    assert file.read_bytes() == b"two"
-    assert list(tmp_path.iterdir()) == [file]
-
-
-def test_a_full_disk_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    file = tmp_path / "a"
-    write_whole(file, b"one")
-
-    def full(_: int) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(OSError, match="No space"):
-        write_whole(file, b"two", force=True)
-    assert file.read_bytes() == b"one"
-    assert list(tmp_path.iterdir()) == [file]
 
 
 def test_killed_at_any_moment_the_old_file_or_the_new_one(samples: Path, tmp_path: Path) -> None:

@@ -7,14 +7,16 @@ from pathlib import Path
 
 from mocapress import codecs
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
-from mocapress.container import Kind, diffma_json, pack, pack_file
-from mocapress.errors import FormatError, MocapressError
+from mocapress.codecs.fallback import first_that_works
+from mocapress.codecs.loss import Loss, checked_loss
+from mocapress.container import Kind, diffma_json, pack, pack_file, parse
+from mocapress.errors import CorruptError, FormatError, VerificationError
 from mocapress.formats import asf
 from mocapress.formats import files as motion_files
 from mocapress.formats.files import find_asf, format_clip, sniff, split
 from mocapress.models import load_model
 from mocapress.motion import Clip, Skeleton, convert
-from mocapress.restore import decompress, load
+from mocapress.restore import chunks_of, decompress, load
 from mocapress.storage import write_whole
 
 __all__ = ["Compressed", "compress", "compress_bytes", "decompress", "load", "read", "write"]
@@ -32,6 +34,8 @@ class Compressed:
     """The ``.mcz`` file."""
     warning: str | None
     """Why the numbers, or a part of them, were not compressed as motion."""
+    loss: Loss | None = None
+    """What a lossy codec lost, measured from what it decodes to; None where nothing is lost."""
 
 
 def compress(
@@ -61,7 +65,8 @@ def compress(
     Returns
     -------
     bytes
-        The ``.mcz`` file; it was decoded again and compared with the source.
+        The ``.mcz`` file; it was decoded again and compared with the source. Where a codec fails,
+        another way is taken; ``compress_bytes`` says so.
 
     Raises
     ------
@@ -100,26 +105,27 @@ def compress_bytes(
         codecs.learner(made, model)
     skeleton = asf.parse_asf(asf_data) if asf_data else None
     kind = sniff(data, name)
-    blob, warning = None, None
+    blob, warning, loss = None, None, None
     if kind in ("amc", "bvh"):
+        embedded = asf_data if embed_asf else b""
         try:
-            blob, warning = _compress_motion(
-                data, kind, made, skeleton, asf_data if embed_asf else b"", name, model
+            blob, warning, loss = _compress_motion(
+                data, kind, made, skeleton, embedded, name, model
             )
         except FormatError as error:
             warning = f"{error}; stored by a general-purpose compressor"
             if skeleton is not None and not embed_asf:
                 # The ASF that lay beside may be another's.
                 with suppress(FormatError):
-                    blob, _ = _compress_motion(data, kind, made, None, b"", name, model)
+                    blob, _, loss = _compress_motion(data, kind, made, None, b"", name, model)
                     warning = f"{error}; compressed without a skeleton"
     elif kind is None:
         warning = "not a motion file; stored by a general-purpose compressor"
     if blob is None or len(data) < _SMALL or len(blob) > _POOR * len(data):
         plain = _compress_plain(data)
         if blob is None or len(plain) < len(blob):
-            blob = plain
-    return Compressed(blob, warning)
+            blob, loss = plain, None
+    return Compressed(blob, warning, loss)
 
 
 def _compress_motion(
@@ -130,32 +136,48 @@ def _compress_motion(
     embedded: bytes,
     name: str,
     model: Model | None,
-) -> tuple[bytes | None, str | None]:
+) -> tuple[bytes | None, str | None, Loss | None]:
     clip, layout, problems = split(data, kind, skeleton=skeleton, file=name or None)
     warning = "; ".join(str(problem.error(name or None)) for problem in problems) or None
-    if layout.verbatim_bytes() + len(layout.tail) > len(data) / 2:
-        return None, warning or "numbers in no regular form; stored by a general-purpose compressor"
-    encoded = codec.encode(clip, model=model)
-    blob = pack_file(
-        kind=Kind[kind.upper()],
-        size=len(data),
-        digest=hashlib.sha256(data).digest(),
-        payloads=[(chunk.frames, chunk.restart, chunk.payload) for chunk in encoded.chunks],
-        columns=clip.channels,
-        codec=codecs.spec(codec),
-        model=model.digest if model else b"",
-        codec_header=encoded.header,
-        layout=pack(layout.to_bytes()),
-        skeleton=pack(embedded) if embedded else b"",
-    )
-    if codec.lossless:
-        try:
-            restored = decompress(blob, models=[model] if model else [])
-        except MocapressError as failure:
-            return None, f"codec {codec.id} failed its check ({failure}); stored without it"
-        if restored != data:
-            return None, f"codec {codec.id} does not restore this file; stored without it"
-    return blob, warning
+    if not clip.frames or layout.verbatim_bytes() + len(layout.tail) > len(data) / 2:
+        reason = "numbers in no regular form" if clip.frames else "no frames"
+        return None, warning or f"{reason}; stored by a general-purpose compressor", None
+
+    def work(way: Codec) -> tuple[bytes, Loss | None]:
+        own = model if way is codec else None
+        encoded = way.encode(clip, model=own)
+        blob = pack_file(
+            kind=Kind[kind.upper()],
+            size=len(data),
+            digest=hashlib.sha256(data).digest(),
+            payloads=[(chunk.frames, chunk.restart, chunk.payload) for chunk in encoded.chunks],
+            columns=clip.channels,
+            codec=codecs.spec(way),
+            model=own.digest if own else b"",
+            codec_header=encoded.header,
+            layout=pack(layout.to_bytes()),
+            skeleton=pack(embedded) if embedded else b"",
+        )
+        return blob, _check(blob, data, way, clip, own)
+
+    found, failure = first_that_works(codec, work)
+    blob, loss = found or (None, None)
+    return blob, "; ".join(filter(None, (failure, warning))) or None, loss
+
+
+def _check(blob: bytes, data: bytes, codec: Codec, clip: Clip, model: Model | None) -> Loss | None:
+    """Decode a file and compare: bytes of a lossless codec, else values."""
+    failure = "the file does not come back"
+    try:
+        if not codec.lossless:
+            mcz = parse(blob)
+            values = codec.decode(mcz.codec_header, chunks_of(mcz), clip.columns, model=model)
+            return checked_loss(codec, clip, values)
+        if decompress(blob, models=[model] if model else []) == data:
+            return None
+    except CorruptError as error:
+        failure = error.what
+    raise VerificationError(f"codec {codec.id} failed its check ({failure}); please report this")
 
 
 def _compress_plain(data: bytes) -> bytes:
