@@ -227,6 +227,12 @@ def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:
     return layout.format, layout.join(values, (1 << 24) + 64 * (values.size + len(data)))
 
 
+def format_of(data: bytes | memoryview) -> str:
+    """Give the id of the format of the motion file that a document was made of, or ``json``."""
+    layout = _layout(open_json(data))
+    return layout.format if layout else "json"
+
+
 def _layout(document: Document) -> Layout | None:
     if not document.layout:
         return None
