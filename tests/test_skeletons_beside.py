@@ -6,15 +6,18 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import Result
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
 import mocapress as mp
 from mocapress.cli.app import app
 from mocapress.storage import ExistsError
 
 CASES = Path(__file__).parent / "cases"
-AMC = b":DEGREES\n1\nroot 1 2 3 4 5 6\n"
+# Long enough to be compressed as motion.
+AMC = b":DEGREES\n" + b"".join(
+    b"%d\nroot 1 2 3 %d.%d 5 -%d.5\n" % (i, i * i % 90, i % 7 + 1, i * i % 31)
+    for i in range(1, 400)
+)
 ASF = b":name %s\n:root\norder TX TY TZ RX RY RZ\n:bonedata\n:hierarchy\n"
 
 

@@ -109,12 +109,12 @@ def test_a_file_that_is_replaced_meanwhile_is_read_as_it_was(tmp_path: Path) -> 
 def test_no_file_stays_open(tmp_path: Path) -> None:
     file = tmp_path / "walk.bvh"
     file.write_bytes((GOLDEN / "v1_walk.bvh").read_bytes())
-    before = len(os.listdir("/proc/self/fd"))
+    before = len(list(Path("/proc/self/fd").iterdir()))
     for _ in range(3):
         mp.compress(file)
         with pytest.raises(mp.MocapressError):
             mp.load(file)
-    assert len(os.listdir("/proc/self/fd")) == before
+    assert len(list(Path("/proc/self/fd").iterdir())) == before
 
 
 @pytest.mark.parametrize(
