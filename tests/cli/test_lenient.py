@@ -5,16 +5,11 @@ import re
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner, Result
+from running import mocapress
 
 import mocapress as mp
-from mocapress.cli.app import app
 
 READING = [["info"], ["convert", "--to", "amc"], ["view", "--export"]]
-
-
-def mocapress(*words: object) -> Result:
-    return CliRunner().invoke(app, [str(word) for word in words])
 
 
 def command(words: list[str], file: Path, *more: str) -> list[object]:
