@@ -283,7 +283,7 @@ def printed(clip: Clip, of: Format, path: Path) -> dict[Path, bytes]:
             files[place] = contents
         elif place.read_bytes() != contents:
             raise ExistsError(
-                f"this file is not from {path.name} and would be replaced",
+                f"file exists and did not come with {path.name}",
                 file=str(place),
                 expected="another name for the output, or this file elsewhere",
             )
