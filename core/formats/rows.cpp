@@ -12,6 +12,10 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' |
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+// Whether a line that begins so is none of the frame before: it is the next frame's number, or the
+// NULs or the Ctrl-Z that some programs leave behind a text.
+bool may_follow_row(char c) { return is_digit(c) || c == '-' || c == '\0' || c == '\x1a'; }
+
 // A position in the text that moves by items.
 struct Cursor {
   const char* p;
@@ -128,7 +132,7 @@ ParsedRows parse_rows(std::string_view data, uint64_t begin, const RowShape& sha
       if (whole && !next.line_end()) end = RowEnd::line_end_expected, whole = false;
     }
     // A line more than the shape has belongs to this row, not to the next.
-    if (whole && shape.counter && next.p < next.end && !is_digit(*next.p)) {
+    if (whole && shape.counter && next.p < next.end && !may_follow_row(*next.p)) {
       end = RowEnd::counter_expected;
       whole = false;
     }

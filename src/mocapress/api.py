@@ -131,8 +131,8 @@ def _compress_motion(
     name: str,
     model: Model | None,
 ) -> tuple[bytes | None, str | None]:
-    clip, layout, error = split(data, kind, skeleton=skeleton, file=name or None)
-    warning = f"{error}; the rest of the file is kept as text" if error else None
+    clip, layout, problems = split(data, kind, skeleton=skeleton, file=name or None)
+    warning = "; ".join(str(problem.error(name or None)) for problem in problems) or None
     if layout.verbatim_bytes() + len(layout.tail) > len(data) / 2:
         return None, warning or "numbers in no regular form; stored by a general-purpose compressor"
     encoded = codec.encode(clip, model=model)
@@ -167,7 +167,7 @@ def _compress_plain(data: bytes) -> bytes:
     )
 
 
-def read(path: str | Path, *, asf_path: str | Path | None = None) -> Clip:
+def read(path: str | Path, *, asf_path: str | Path | None = None, strict: bool = True) -> Clip:
     """Read a motion file: AMC, BVH, ASF or DiffMA JSON.
 
     Parameters
@@ -176,6 +176,11 @@ def read(path: str | Path, *, asf_path: str | Path | None = None) -> Clip:
         An ASF alone gives a clip of its skeleton without frames.
     asf_path
         The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
+    strict
+        Whether a file that has lost frames is refused: one with fewer rows than it declares, or
+        with rows that cannot be read. With ``strict=False`` it is read as far as possible, with a
+        ``MotionWarning``; a row that cannot be read between others keeps the values of the one
+        before. What loses nothing, such as a row more than declared, always is a warning.
 
     Raises
     ------
@@ -187,7 +192,7 @@ def read(path: str | Path, *, asf_path: str | Path | None = None) -> Clip:
     """
     if diffma_json.is_json(b"", str(path)):
         return diffma_json.json_to_clip(Path(path).read_bytes())
-    return motion_files.read(path, asf_path=asf_path)
+    return motion_files.read(path, asf_path=asf_path, strict=strict)
 
 
 def write(clip: Clip, path: str | Path, *, force: bool = False) -> None:

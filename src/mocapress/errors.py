@@ -86,5 +86,29 @@ class MissingModelError(MocapressError):
     """The model that a compressed file names is in none of the places where it was looked for."""
 
 
+class MotionWarning(UserWarning):
+    """Something is not as it should be, or had to be assumed; nothing was refused.
+
+    Parameters
+    ----------
+    name
+        A short fixed name, such as ``extra-rows``, that scripts may rely on.
+    fact
+        What it is, with place, expected and found.
+
+    """
+
+    def __init__(self, name: str, fact: MocapressError) -> None:
+        super().__init__(str(fact))
+        self.name = name
+        self.fact = fact
+
+    def as_dict(self) -> dict[str, str | int]:
+        """Give the warning as plain data, for ``--json``."""
+        fields = self.fact.as_dict()
+        del fields["error"]
+        return {"warning": self.name} | fields
+
+
 class VerificationError(MocapressError):
     """What was decoded is not what was encoded; nothing has been written."""

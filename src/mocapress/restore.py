@@ -15,6 +15,7 @@ from mocapress.errors import CorruptError, FormatError, ParameterError
 from mocapress.formats import asf
 from mocapress.formats.files import columns_of, find_asf, sniff, split
 from mocapress.formats.layout import Layout
+from mocapress.formats.problems import report
 from mocapress.models import Place, find_model
 from mocapress.motion import Clip, Skeleton
 
@@ -66,6 +67,7 @@ def load(
     *,
     asf_path: str | Path | None = None,
     models: Sequence[Place] = (),
+    strict: bool = True,
 ) -> Clip:
     """Give the clip in a ``.mcz`` or a DiffMA JSON, or some of its frames.
 
@@ -79,11 +81,16 @@ def load(
         The skeleton of an AMC; without it, the one in the file, or the ASF beside it, is taken.
     models
         Where to look for the model that the file may need, as in ``decompress``.
+    strict
+        Whether a clip is refused whose file had lost frames before it was compressed, as by
+        ``read``.
 
     Raises
     ------
     CorruptError
         When the file is damaged, as far as it was read.
+    FormatError
+        When it holds no motion, or only a part of it.
     MissingModelError
         When the model that the file needs is nowhere.
 
@@ -99,7 +106,9 @@ def load(
         kind = sniff(contents)
         if kind not in ("amc", "bvh"):
             raise FormatError("no motion in this file", expected="AMC or BVH inside")
-        clip = split(contents, kind, skeleton=skeleton).clip
+        clip, _, problems = split(contents, kind, skeleton=skeleton)
+        file = None if isinstance(source, bytes) else str(source)
+        report(problems, file, strict=strict)
         return clip if frames is None else clip.with_values(clip.values[frames])
     codec, _, clip = _open(mcz, skeleton)
     rows = range(mcz.frames)[frames or slice(None)]

@@ -24,6 +24,7 @@ const made = clips.map((clip) => {
     frameTime: clip.frameTime,
     frames,
     positions,
+    notes: clip.notes,
   };
 });
 process.stdout.write(JSON.stringify({ clips: made, errors }));

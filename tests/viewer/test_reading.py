@@ -70,7 +70,7 @@ BROKEN = {
     "channels.bvh": BVH.replace(b"CHANNELS 3", b"CHANNELS 4", 1),
     "offset.bvh": BVH.replace(b"OFFSET ", b"OFFSET x", 1),
     "frames.bvh": re.sub(rb"Frames:\s+455", b"Frames: 45500", BVH),
-    "more_rows.bvh": re.sub(rb"Frames:\s+455", b"Frames: 4", BVH),
+    "a_row_missing.bvh": re.sub(rb"Frames:\s+455", b"Frames: 456", BVH),
     "frame_time.bvh": BVH.replace(b"Frame Time:", b"Frame Tim:"),
     "empty.bvh": b"",
     "empty.amc": b"",
@@ -91,3 +91,30 @@ def test_errors_name_the_same_place(tmp_path: Path, name: str) -> None:
     (message,) = made["errors"]
     place = f"{name}, line {error.value.line}: " if error.value.line else f"{name}: "
     assert message.startswith(f"{place}{error.value.what}"), (message, str(error.value))
+
+
+ODD = {
+    "more_rows.bvh": re.sub(rb"Frames:\s+455", b"Frames: 4", BVH),
+    "undeclared.bvh": re.sub(rb"Frames:\s+455", b"Frames: 0", BVH),
+    "nul.bvh": BVH + b"\0\0",
+    "ctrl_z.bvh": BVH + b"\r\n\x1a",
+    "text.bvh": BVH + b"end\n",
+    "half_a_row.bvh": BVH + b"1 2 3",
+    "nul.amc": b"1\nroot 1 2 3 4 5 6\n2\nroot 1 2 3 4 5 6\n\0\0",
+    "ctrl_z.amc": b"-1\nroot 1 2 3 4 5 6\n\x1a\r\n",
+}
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_what_loses_nothing_is_played_and_said(tmp_path: Path, name: str) -> None:
+    file = tmp_path / name
+    file.write_bytes(ODD[name])
+    with pytest.warns(mp.MotionWarning) as caught:
+        clip = mp.read(file)
+    (made,) = read_by_page(file)["clips"]
+    assert made["length"] == clip.frames
+    notes = [note for note in made["notes"] if "no skeleton" not in note]
+    for note, warning in zip(notes, caught, strict=True):
+        assert isinstance(warning.message, mp.MotionWarning)
+        fact = warning.message.fact
+        assert note.startswith(f"line {fact.line}: {fact.what}; expected ")

@@ -55,7 +55,7 @@ export class App {
     for (const clip of clips) {
       try {
         takes.push(new Take(clip));
-        if (clip.note) errors.push(`${clip.name}: ${clip.note}`);
+        for (const note of clip.notes ?? []) errors.push(`${clip.name}: ${note}`);
       } catch (error) {
         errors.push(message(error, clip.name));
       }

@@ -21,6 +21,7 @@ from mocapress.errors import (
 from mocapress.formats import asf
 from mocapress.formats.files import columns_of, find_asf, sniff, split
 from mocapress.formats.layout import Layout
+from mocapress.formats.problems import report
 from mocapress.motion import Clip, Column, Skeleton
 from mocapress.motion.clip import decimal_seconds
 from mocapress.records import Reader, Writer
@@ -118,9 +119,8 @@ def file_to_json(
     kind = sniff(data, name)
     if kind not in ("amc", "bvh"):
         raise FormatError("not a motion file", file=name or None, expected="AMC or BVH")
-    clip, layout, error = split(data, kind, skeleton=skeleton, file=name or None)
-    if error:
-        raise error
+    clip, layout, problems = split(data, kind, skeleton=skeleton, file=name or None)
+    report(problems, name or None)
     writer = Writer()
     writer.integer(Kind[kind.upper()])
     writer.integer(clip.frames)

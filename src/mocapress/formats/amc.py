@@ -7,17 +7,26 @@ from numpy.typing import NDArray
 
 from mocapress.errors import FormatError
 from mocapress.formats.layout import Slot
-from mocapress.formats.rows import Body, RowShape, joined, read_rows, row_error
+from mocapress.formats.problems import Problem
+from mocapress.formats.rows import (
+    Body,
+    RowShape,
+    bytes_after_end,
+    is_padding,
+    read_all,
+    read_rows,
+    unreadable,
+)
 from mocapress.motion import Clip, Skeleton
 from mocapress.motion.columns import bone_columns
 
 # A line that holds a frame's number and nothing else.
-_COUNTER = re.compile(rb"^[ \t]*\d+[ \t]*\r?$", re.MULTILINE)
+_COUNTER = re.compile(rb"^[ \t]*-?\d+[ \t]*\r?$", re.MULTILINE)
 _TOKEN = re.compile(rb"\S+")
 
 
-def read_body(data: bytes, file: str | None = None) -> tuple[Body, RowShape, FormatError | None]:
-    """Read the frames; the error says why reading stopped before the end of the file.
+def read_body(data: bytes, file: str | None = None) -> tuple[Body, RowShape, list[Problem]]:
+    """Read the frames.
 
     A bone that a frame leaves out keeps its values of the frame before.
 
@@ -31,27 +40,29 @@ def read_body(data: bytes, file: str | None = None) -> tuple[Body, RowShape, For
     if first is None:
         raise FormatError("no frame", file=file, expected="a line with a frame's number")
     shape = _row_shape(data, first.start(), file)
-    bodies: list[Body] = []
-    begin = first.start()
-    while True:
-        body = read_rows(data, begin, shape)
-        if len(body.values):
-            bodies.append(body)
-        begin = int(body.offsets[-1])
-        if body.stop == "end of data":
-            break
-        partial = _partial_rows(data, begin, shape, bodies[-1].values[-1]) if bodies else None
-        if partial is None:
-            break
-        bodies.append(partial)
-        begin = int(partial.offsets[-1])
-    error = None
-    if body.stop != "end of data":
-        frame = 1 + sum(len(b.values) for b in bodies)
-        error = row_error(data, body, file, frame, _expected(body, shape))
-    if not bodies:
-        raise error or FormatError("no frame", file=file)
-    return joined(bodies), shape, error
+    reading = read_all(
+        data,
+        first.start(),
+        shape,
+        lambda at: _next_counter(data, at),
+        lambda at, before: _partial_rows(data, at, shape, before) if before else None,
+    )
+    cut = reading.end is not None and not is_padding(data[int(reading.end.offsets[-1]) :])
+    problems = []
+    if reading.stops or cut:
+        problems.append(unreadable(data, reading, lambda stop: _expected(stop, shape), cut=cut))
+    if reading.body is None:
+        raise problems[0].error(file) if problems else FormatError("no frame", file=file)
+    if reading.end is not None and not cut:
+        problems.append(bytes_after_end(data, reading.body))
+    return reading.body, shape, problems
+
+
+def _next_counter(data: bytes, begin: int) -> int:
+    """Give where the next frame begins, behind the one at an offset."""
+    counter = _COUNTER.match(data, begin)
+    following = _COUNTER.search(data, counter.end() if counter else begin)
+    return following.start() if following else len(data)
 
 
 def clip_of(
@@ -96,7 +107,7 @@ def _lines(text: bytes, begin: int = 0) -> list[list[re.Match[bytes]]]:
     lines: list[list[re.Match[bytes]]] = []
     for line in re.compile(rb"[^\n]+").finditer(text, begin):
         tokens = list(_TOKEN.finditer(text, *line.span()))
-        if tokens and not tokens[0].group().startswith(b"#"):
+        if tokens and tokens[0].group()[:1] not in b"#\0\x1a":
             lines.append(tokens)
     return lines
 
@@ -121,9 +132,7 @@ def _row_shape(data: bytes, begin: int, file: str | None) -> RowShape:
     return RowShape(True, words, counts)
 
 
-def _partial_rows(
-    data: bytes, begin: int, shape: RowShape, before: NDArray[np.float64]
-) -> Body | None:
+def _partial_rows(data: bytes, begin: int, shape: RowShape, before: Body) -> Body | None:
     """Read rows that leave out bones or have them in another order, where it is that."""
     lines = _lines(_row_text(data, begin))[1:]
     words = tuple(tokens[0].group() for tokens in lines)
@@ -138,7 +147,7 @@ def _partial_rows(
     columns = np.concatenate(
         [np.arange(first[word], first[word] + counts[word]) for word in words] or [np.arange(0)]
     )
-    values = np.tile(before, (len(part.values), 1))
+    values = np.tile(before.values[-1], (len(part.values), 1))
     values[:, columns] = part.values
     statistics = np.zeros((shape.columns, 8), np.uint8)
     statistics[:, 0] = 255

@@ -5,13 +5,25 @@ import re
 from mocapress.errors import FormatError
 from mocapress.formats.bvh_hierarchy import Hierarchy, parse_hierarchy
 from mocapress.formats.layout import Slot
-from mocapress.formats.rows import Body, RowShape, read_rows, row_error
+from mocapress.formats.problems import EXTRA_ROWS, MISSING_ROWS, Problem
+from mocapress.formats.rows import (
+    Body,
+    Reading,
+    RowShape,
+    after_rows,
+    bytes_after_end,
+    is_padding,
+    line_of,
+    read_all,
+    read_rows,
+    unreadable,
+)
 
 _TOKEN = re.compile(rb"\S+")
 
 
-def read_body(data: bytes, file: str | None = None) -> tuple[Body, Hierarchy, FormatError | None]:
-    """Read the frames; the error says why reading stopped before the declared number of frames.
+def read_body(data: bytes, file: str | None = None) -> tuple[Body, Hierarchy, list[Problem]]:
+    """Read the frames, however many there are.
 
     Raises
     ------
@@ -24,23 +36,40 @@ def read_body(data: bytes, file: str | None = None) -> tuple[Body, Hierarchy, Fo
     if channels == 0:
         raise FormatError("no channels", file=file, expected="a joint with CHANNELS")
     shape = RowShape(False, (b"",), (channels,))
-    body = read_rows(data, hierarchy.rows_begin, shape, hierarchy.frames)
-    found = len(body.values)
-    error = None
-    if body.stop not in ("end of data", "limit"):
+    reading = read_all(data, hierarchy.rows_begin, shape, lambda at: _next_line(data, at))
+    body = reading.body or read_rows(data, hierarchy.rows_begin, shape, 0)
+    return body, hierarchy, _problems(data, reading, body, hierarchy.frames, channels)
+
+
+def _next_line(data: bytes, begin: int) -> int:
+    end = data.find(b"\n", begin)
+    return len(data) if end < 0 else end + 1
+
+
+def _problems(
+    data: bytes, reading: Reading, body: Body, declared: int, channels: int
+) -> list[Problem]:
+    found, rest = len(body.values), after_rows(data, body)
+    problems = []
+    # Where as many frames as declared were read, what is no row is none that is missing.
+    more = found > declared and rest[:1] in b"+-.0123456789"
+    cut = bool(rest) and not is_padding(rest) and (found < declared or more)
+    if reading.stops or cut:
         expected = f"{channels} numbers on a line"
-        error = row_error(data, body, file, found + 1, expected)
-    elif body.stop == "limit" and data[int(body.offsets[-1]) :].strip():
-        error = row_error(data, body, file, found + 1, f"{hierarchy.frames} frames, as declared")
-    elif found < hierarchy.frames / 2:
-        # One frame too few is common; half of them missing is a broken file.
-        error = FormatError(
-            "frames are missing",
-            file=file,
-            expected=f"{hierarchy.frames} frames, as declared",
-            found=str(found),
+        problems.append(unreadable(data, reading, lambda _: expected, cut=cut))
+    if found + cut < declared:
+        expected = f"{declared} frames, as declared"
+        problems.append(
+            Problem.of(MISSING_ROWS, "frames are missing", expected=expected, found=str(found))
         )
-    return body, hierarchy, error
+    if found > declared:
+        offset = int(body.offsets[declared])
+        line, expected = line_of(data, offset), f"{declared} frames"
+        what = "more frames than declared"
+        problems.append(Problem.of(EXTRA_ROWS, what, line, offset, expected, str(found)))
+    if rest and not cut:
+        problems.append(bytes_after_end(data, body))
+    return problems
 
 
 def slots_of_row(text: bytes) -> list[Slot]:

@@ -11,6 +11,7 @@ import numpy as np
 from mocapress.errors import FormatError, UnsupportedError
 from mocapress.formats import amc, asf, bvh, bvh_hierarchy
 from mocapress.formats.layout import Layout, RowTemplate, build
+from mocapress.formats.problems import Problem, report
 from mocapress.motion import Clip, NumberFormat, Skeleton
 from mocapress.motion.clip import decimal_seconds
 from mocapress.motion.columns import skeleton_columns
@@ -24,8 +25,8 @@ class Split(NamedTuple):
 
     clip: Clip
     layout: Layout
-    error: FormatError | None
-    """Why the file could be read only in part; the rest is in the layout's tail."""
+    problems: tuple[Problem, ...]
+    """Where the file departs from its format. What is no row is in the layout's tail."""
 
 
 def sniff(data: bytes, name: str = "") -> str | None:
@@ -66,11 +67,11 @@ def split(
 
     """
     if kind == "amc":
-        body, shape, error = amc.read_body(data, file)
+        body, shape, problems = amc.read_body(data, file)
         clip = amc.clip_of(body.values, shape, data[: int(body.offsets[0])], skeleton)
         layout = build(kind, data, body, partial(amc.slots_of_row, shape=shape))
     elif kind == "bvh":
-        body, hierarchy, error = bvh.read_body(data, file)
+        body, hierarchy, problems = bvh.read_body(data, file)
         clip = Clip.of(
             body.values,
             skeleton_columns(hierarchy.skeleton),
@@ -85,7 +86,7 @@ def split(
         for column, number_format in zip(clip.columns, layout.formats, strict=True)
     )
     clip = replace(clip.with_columns(columns), name=Path(file).stem if file else "")
-    return Split(clip, layout, error)
+    return Split(clip, layout, tuple(problems))
 
 
 def columns_of(layout: Layout, skeleton: Skeleton | None = None) -> Clip:
@@ -107,7 +108,7 @@ def columns_of(layout: Layout, skeleton: Skeleton | None = None) -> Clip:
     return empty.with_columns(columns).with_values(empty.values[:0])
 
 
-def read(path: str | Path, *, asf_path: str | Path | None = None) -> Clip:
+def read(path: str | Path, *, asf_path: str | Path | None = None, strict: bool = True) -> Clip:
     """Read a motion file.
 
     Parameters
@@ -116,11 +117,14 @@ def read(path: str | Path, *, asf_path: str | Path | None = None) -> Clip:
         An AMC, BVH or ASF file. An ASF alone gives a clip of its skeleton without frames.
     asf_path
         The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
+    strict
+        Whether a file that has lost frames is refused. Otherwise it gives a ``MotionWarning``, as
+        does whatever else departs from the format and loses nothing.
 
     Raises
     ------
     FormatError
-        When the file does not follow its format: with file, line, expected and found.
+        When the file cannot be read, or only in part: with file, line, expected and found.
     OSError
         When it cannot be opened.
 
@@ -139,8 +143,7 @@ def read(path: str | Path, *, asf_path: str | Path | None = None) -> Clip:
     if found:
         skeleton = asf.parse_asf(Path(found).read_bytes(), str(found))
     parts = split(data, kind, skeleton=skeleton, file=str(path))
-    if parts.error:
-        raise parts.error
+    report(parts.problems, str(path), strict=strict, depth=2)
     return parts.clip
 
 

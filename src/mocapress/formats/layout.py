@@ -136,7 +136,9 @@ def build(
         return slots[index]
 
     frames = len(body.values)
-    sample = np.unique(np.linspace(0, frames - 1, min(frames, _SAMPLE)).astype(np.int64))
+    pending = np.setdiff1d(np.arange(frames), body.unread)
+    places = np.linspace(0, len(pending) - 1, min(len(pending), _SAMPLE)).astype(np.int64)
+    sample = pending[np.unique(places)]
     texts: list[list[bytes | None]] = []
     for index in sample.tolist():
         texts.append([None] * body.values.shape[1])
@@ -149,7 +151,6 @@ def build(
     templates: list[RowTemplate] = []
     assigned = np.full(frames, -1, np.int32)
     cells: list[tuple[int, int, bytes]] = []
-    pending = np.arange(frames)
     while len(pending) and len(templates) < MOST_TEMPLATES:
         first, second = row(int(pending[0])), row(int(pending[min(1, len(pending) - 1)]))
         for template in (_padded_template(first, second), _template(*first)):

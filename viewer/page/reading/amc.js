@@ -4,6 +4,8 @@ import { Rows } from "./rows.js";
 import { latin1, Scanner } from "./scanner.js";
 import { channelNames } from "./skeleton.js";
 
+// What programs leave behind a text: NULs, or the Ctrl-Z of DOS.
+const PADDING = /^[\0\x1a]/;
 const ROOT_CHANNELS = ["tx", "ty", "tz", "rx", "ry", "rz"];
 
 /**
@@ -16,10 +18,10 @@ const ROOT_CHANNELS = ["tx", "ty", "tz", "rx", "ry", "rz"];
  */
 export function parseAmc(bytes, skeleton) {
   const text = latin1(bytes);
-  const counter = /^[ \t]*\d+[ \t]*\r?$/m.exec(text);
+  const counter = /^[ \t]*-?\d+[ \t]*\r?$/m.exec(text);
   if (!counter) throw new FileError("no frame", { expected: "a line with a frame's number" });
   const bones = firstFrame(text, counter.index);
-  const rows = readFrames(new Scanner(bytes, counter.index), bones);
+  const { rows, notes } = readFrames(new Scanner(bytes, counter.index), bones);
   const header = text.slice(0, counter.index);
   const unit = /^\s*:(radians|degrees)/im.exec(header)?.[1].toLowerCase();
   const columns = skeleton ? columnsOf(skeleton, bones) : null;
@@ -31,7 +33,7 @@ export function parseAmc(bytes, skeleton) {
     skeleton: made,
     frameTime: null,
     angleUnit: unit === "radians" ? "rad" : unit === "degrees" ? "deg" : undefined,
-    note: made ? undefined : "no skeleton: drop the .asf together with the .amc",
+    notes: made ? notes : ["no skeleton: drop the .asf together with the .amc", ...notes],
   };
 }
 
@@ -41,8 +43,8 @@ function firstFrame(text, begin) {
   let first = 0;
   for (const raw of linesFrom(text, text.indexOf("\n", begin) + 1 || text.length)) {
     const words = raw.trim().split(/\s+/);
-    if (/^\d+$/.test(raw.trim())) break;
-    if (!words[0] || words[0].startsWith("#")) continue;
+    if (/^-?\d+$/.test(raw.trim())) break;
+    if (PADDING.test(raw) || !words[0] || words[0].startsWith("#")) continue;
     bones.push({ name: words[0], count: words.length - 1, first });
     first += words.length - 1;
   }
@@ -68,6 +70,7 @@ function readFrames(scanner, bones) {
   const byName = new Map(bones.map((bone, index) => [bone.name, index]));
   const repeated = byName.size < bones.length;
   const seen = new Int32Array(bones.length);
+  const notes = [];
   const fail = (expected) => {
     const what = `frame ${Math.max(1, rows.count)} cannot be read`;
     throw new FileError(what, { line: scanner.line, expected, found: scanner.found });
@@ -76,6 +79,10 @@ function readFrames(scanner, bones) {
   let first = 0;
   while (scanner.toContent()) {
     const begin = scanner.position;
+    if (scanner.onlyPadding()) {
+      notes.push(scanner.afterEnd());
+      break;
+    }
     if (next < bones.length && scanner.passes(bones[next].name)) {
       seen[next] = rows.count;
       readValues(scanner, rows.values, first, bones[next], fail);
@@ -84,7 +91,7 @@ function readFrames(scanner, bones) {
     }
     const word = scanner.word();
     const index = byName.get(word);
-    if (/^\d+$/.test(word) && scanner.lineEnds()) {
+    if (/^-?\d+$/.test(word) && scanner.lineEnds()) {
       if (repeated && rows.count && next < bones.length) {
         scanner.position = begin;
         fail(`bone ${bones[next].name}`);
@@ -101,7 +108,7 @@ function readFrames(scanner, bones) {
     }
   }
   if (repeated && next < bones.length) fail(`bone ${bones[next].name}`);
-  return rows;
+  return { rows, notes };
 }
 
 function readValues(scanner, values, first, bone, fail) {

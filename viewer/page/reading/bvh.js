@@ -24,13 +24,7 @@ export function parseBvh(bytes) {
   const { joints, frames, frameTime, rowsBegin } = new Hierarchy(latin1(bytes)).read();
   const columns = joints.flatMap((joint, index) => joint.channels.map((kind) => [index, kind]));
   if (!columns.length) throw new FileError("no channels", { expected: "a joint with CHANNELS" });
-  const rows = readRows(new Scanner(bytes, rowsBegin), columns.length, frames);
-  if (rows.count < frames / 2) {
-    throw new FileError("frames are missing", {
-      expected: `${frames} frames, as declared`,
-      found: String(rows.count),
-    });
-  }
+  const { rows, notes } = readRows(new Scanner(bytes, rowsBegin), columns.length, frames);
   const skeleton = { rotation: "moving", angleUnit: "deg", lengthUnit: null, joints, columns };
   return {
     names: channelNames(skeleton),
@@ -38,22 +32,49 @@ export function parseBvh(bytes) {
     channels: rows.channels(),
     skeleton,
     frameTime,
+    notes,
   };
 }
 
+/** Every row; fewer than declared are an error, more are read, and the page says so. */
 function readRows(scanner, columns, frames) {
   const rows = new Rows(columns);
+  const notes = [];
+  let extra = 0; // line of the first row that was not declared
   while (scanner.toContent()) {
-    if (rows.count === frames) throw rowError(scanner, frames + 1, `${frames} frames, as declared`);
+    const begin = scanner.position;
     const first = rows.begin();
-    for (let column = 0; column < columns; column++) {
-      const value = scanner.number();
-      if (Number.isNaN(value)) throw rowError(scanner, rows.count, `${columns} numbers on a line`);
+    let column = 0;
+    for (let value; column < columns; column++) {
+      value = scanner.number();
+      if (Number.isNaN(value)) break;
       rows.values[first + column] = value;
     }
-    if (!scanner.lineEnds()) throw rowError(scanner, rows.count, `${columns} numbers on a line`);
+    if (column < columns || !scanner.lineEnds()) {
+      const error = rowError(scanner, rows.count, `${columns} numbers on a line`);
+      scanner.position = begin;
+      const more = rows.count - 1 > frames && scanner.startsNumber();
+      if (!scanner.onlyPadding() && (rows.count - 1 < frames || more)) throw error;
+      rows.count--;
+      notes.push(scanner.afterEnd());
+      break;
+    }
+    if (rows.count === frames + 1) {
+      scanner.position = begin;
+      extra = scanner.line;
+      scanner.toNextLine();
+    }
   }
-  return rows;
+  const found = String(rows.count);
+  if (rows.count < frames) {
+    throw new FileError("frames are missing", { expected: `${frames} frames, as declared`, found });
+  }
+  if (extra) {
+    const expected = `${frames} frames`;
+    const note = new FileError("more frames than declared", { line: extra, expected, found });
+    notes.unshift(note.message);
+  }
+  return { rows, notes };
 }
 
 function rowError(scanner, frame, expected) {

@@ -8,7 +8,7 @@
  * @property {number|null} frameTime seconds; null where the file does not say
  * @property {"deg"|"rad"} [angleUnit] of the channels, where not the skeleton's
  * @property {number} [maxError] that no value exceeds, where that was asked for
- * @property {string} [note] what the page should say of it
+ * @property {string[]} [notes] what the page should say of it
  */
 
 /** Frames per second of an AMC, which does not say; those of the CMU database. */

@@ -42,7 +42,7 @@ function fromExact({ names, frames, skeleton, frameTime, values }) {
     channels: names.map((_, i) => all.subarray(i * frames, (i + 1) * frames)),
     skeleton: skeleton ? withDefaults(skeleton) : null,
     frameTime: frameTime ?? null,
-    note: skeleton ? undefined : "no skeleton: only its curves can be shown",
+    notes: skeleton ? [] : ["no skeleton: only its curves can be shown"],
   };
 }
 

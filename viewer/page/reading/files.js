@@ -61,7 +61,7 @@ export function fromDiffma(document) {
     channels,
     skeleton: skeleton ?? null,
     frameTime: frameTime ?? null,
-    note: skeleton ? undefined : "no skeleton in this file: only its curves can be shown",
+    notes: skeleton ? [] : ["no skeleton in this file: only its curves can be shown"],
   };
 }
 

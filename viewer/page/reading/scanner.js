@@ -1,3 +1,5 @@
+import { FileError } from "./file_error.js";
+
 const [TAB, NEWLINE, RETURN, SPACE, HASH] = [9, 10, 13, 32, 35];
 const [PLUS, MINUS, POINT, ZERO] = [43, 45, 46, 48];
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
@@ -110,6 +112,35 @@ export class Scanner {
     if (!Number.isFinite(value)) return NaN;
     this.position = begin + text.length;
     return value;
+  }
+
+  /** Go behind the end of this line. */
+  toNextLine() {
+    while (this.position < this.bytes.length && this.bytes[this.position] !== NEWLINE) {
+      this.position++;
+    }
+    this.position++;
+  }
+
+  /** Whether a number could begin here. */
+  startsNumber() {
+    return "+-.0123456789".includes(String.fromCharCode(this.bytes[this.position]));
+  }
+
+  /** Whether nothing follows but what programs leave behind a text: NULs, or the Ctrl-Z of DOS. */
+  onlyPadding() {
+    for (let at = this.position; at < this.bytes.length; at++) {
+      const byte = this.bytes[at];
+      if (byte !== 0 && byte !== 26 && byte !== NEWLINE && !isBlank(byte)) return false;
+    }
+    return true;
+  }
+
+  /** What the page says of bytes behind the last row. */
+  afterEnd() {
+    const found = `${this.bytes.length - this.position} bytes`;
+    const details = { line: this.line, expected: "the end of the file", found };
+    return new FileError("bytes after the last frame", details).message;
   }
 
   /** Line number of the position, from 1. */
