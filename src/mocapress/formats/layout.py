@@ -5,7 +5,8 @@ rows, the numbers that are not written as their column is, and the way back to b
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import compress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +47,7 @@ class Layout:
     """A file without its numbers."""
 
     format: str
-    """``amc`` or ``bvh``."""
+    """Its id."""
     header: bytes
     """Up to the first row, verbatim."""
     tail: bytes
@@ -100,23 +101,19 @@ class Layout:
             raise CorruptError("the layout makes a longer file than announced")
         return self.header + body + self.tail
 
-    def first_row(self) -> bytes:
-        """Give the header and a first row whose numbers are zeros: enough to read the columns."""
-        template = self.templates[0]
-        one = Layout(
-            self.format,
-            self.header,
-            b"",
-            self.formats,
-            (template,),
-            np.zeros(1, np.int32),
-            np.ones(1 if template.counter else 0, np.int64),
-            np.empty(0, np.uint64),
-            np.empty(0, np.uint32),
-            (),
-            (),
+    def rows(self, keep: NDArray[np.bool_]) -> "Layout":
+        """Give the layout of those rows alone that are to be kept, (F,)."""
+        cells = keep[self.cell_rows.astype(np.int64)]
+        raw = keep[self.assigned < 0]
+        return replace(
+            self,
+            assigned=self.assigned[keep],
+            counters=self.counters[keep] if len(self.counters) else self.counters,
+            cell_rows=(np.cumsum(keep) - 1)[self.cell_rows[cells].astype(np.int64)].astype(np.uint64),
+            cell_slots=self.cell_slots[cells],
+            cells=tuple(compress(self.cells, cells)),
+            raw_rows=tuple(compress(self.raw_rows, raw)),
         )
-        return one.join(np.zeros((1, len(self.formats))))
 
 
 def build(
