@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from mocapress import codecs
+from mocapress.codecs.fallback import RAISE_VARIABLE
 
 SAMPLES = Path(__file__).parents[1] / "samples"
 # Machines differ in speed: what counts is what holds, not how fast.
@@ -14,6 +15,12 @@ settings.register_profile(
     "mocapress", deadline=None, suppress_health_check=[HealthCheck.too_slow], max_examples=60
 )
 settings.load_profile("mocapress")
+
+
+@pytest.fixture(autouse=True)
+def _faults_are_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let no fallback hide a fault; tests of the fallback switch it on again."""
+    monkeypatch.setenv(RAISE_VARIABLE, "1")
 
 
 @pytest.fixture(scope="session")

@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.codecs import Chunk, Encoded, Model
+from mocapress.codecs import Chunk, Codec, Encoded, Model
 from mocapress.errors import CorruptError
 from mocapress.motion import Clip, Column
 
@@ -19,7 +19,7 @@ _FRAMES = 100
 
 
 @dataclass(frozen=True, slots=True)
-class Learner:
+class Learner(Codec):
     id: ClassVar[str] = "learner"
     lossless: ClassVar[bool] = True
 

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.codecs.app import App, Coding
-from mocapress.codecs.contract import Chunk, Encoded, Model
+from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
 from mocapress.motion import Clip, Column
 
 
 @dataclass(frozen=True, slots=True)
-class _OneAlpha:
+class _OneAlpha(Codec):
     """APP with the same alpha everywhere and so without indices."""
 
     id: ClassVar[str]

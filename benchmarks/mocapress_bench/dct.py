@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from mocapress import _core
 from mocapress.codecs.app import App
 from mocapress.codecs.app.coding import make_plan
-from mocapress.codecs.contract import Chunk, Encoded, Model
+from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
 from mocapress.errors import CorruptError
 from mocapress.motion import Clip, Column
 
@@ -34,7 +34,7 @@ _SIZES = np.dtype("<u4")
 
 
 @dataclass(frozen=True, slots=True)
-class Dct:
+class Dct(Codec):
     """The 16-frame DCT scheme, lossless; one chunk for the whole clip."""
 
     id: ClassVar[str] = "mpeg4-dct"

@@ -111,4 +111,4 @@ class MotionWarning(UserWarning):
 
 
 class VerificationError(MocapressError):
-    """What was decoded is not what was encoded; nothing has been written."""
+    """A codec failed, or what it decodes is not what it encoded; nothing has been written."""

@@ -290,3 +290,22 @@ def test_shells_can_complete(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COMP_WORDS", "mocapress co")
     monkeypatch.setenv("COMP_CWORD", "1")
     assert process().stdout.split() == [b"compress", b"convert"]
+
+
+def test_what_a_lossy_codec_lost_is_measured_and_shown(tmp_path: Path) -> None:
+    shown = mocapress(
+        "compress", GOLDEN / "v1_walk.bvh", "-o", tmp_path / "a.mcz", "--codec=diffma"
+    )
+    words = [
+        "compress",
+        GOLDEN / "v1_walk.bvh",
+        "-o",
+        tmp_path / "b.mcz",
+        "--codec=diffma",
+        "--json",
+    ]
+    (row,) = json.loads(mocapress(*words).stdout)
+    errors = abs(mp.load(tmp_path / "b.mcz").values - mp.read(GOLDEN / "v1_walk.bvh").values)
+    assert row["largest_error"] == errors.max() > 0
+    assert 0 < row["psnr"] < 100
+    assert f"errors up to {errors.max():.3g}" in shown.stdout

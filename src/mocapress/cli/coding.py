@@ -4,6 +4,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +62,7 @@ def compress_files(
         if beside is None and job.source != STREAM and sniff(data, job.source.name) == "amc":
             beside = find_asf(job.source)
         skeleton = beside.read_bytes() if beside else b""
-        warning = None
+        warning, loss = None, None
         if to == "mcz":
             compressed = api.compress_bytes(
                 data,
@@ -71,7 +72,7 @@ def compress_files(
                 embed_asf=embed_asf,
                 model=learned,
             )
-            blob, warning = compressed.blob, compressed.warning
+            blob, warning, loss = compressed.blob, compressed.warning, compressed.loss
         else:
             assert isinstance(made, DiffMA)
             joints = parse_asf(skeleton, str(beside)) if skeleton else None
@@ -83,6 +84,8 @@ def compress_files(
             "raw_bytes": len(data),
             "compressed_bytes": len(blob),
             "ratio": round(len(data) / len(blob), 3),
+            "largest_error": loss.most if loss else None,
+            "psnr": loss.psnr if loss and isfinite(loss.psnr) else None,
             "warning": warning,
         }
 
@@ -175,7 +178,9 @@ def _show_sizes(outcomes: list[Outcome]) -> None:
         return
     for outcome in outcomes:
         raw, small = outcome.result["raw_bytes"], outcome.result["compressed_bytes"]
-        print(f"{outcome.result['output']}: {raw} <-> {small} bytes, {raw / small:.2f} : 1")
+        lost = outcome.result.get("largest_error")
+        errors = "" if lost is None else f", errors up to {lost:.3g}"
+        print(f"{outcome.result['output']}: {raw} <-> {small} bytes, {raw / small:.2f} : 1{errors}")
     if len(outcomes) > 1:
         raw = sum(outcome.result["raw_bytes"] for outcome in outcomes)
         small = sum(outcome.result["compressed_bytes"] for outcome in outcomes)

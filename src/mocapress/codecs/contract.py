@@ -1,8 +1,10 @@
 """What a codec is: the contract that every codec keeps and every caller relies on."""
 
 import hashlib
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
@@ -52,16 +54,19 @@ class Model:
         return hashlib.sha256(named.data).digest()
 
 
-class Codec(Protocol):
+class Codec(ABC):
     """A codec: a frozen dataclass whose fields are its parameters, with their usual values.
 
     ``encode`` and ``decode`` are pure functions of their arguments and the parameters: the same
     bytes on every run and every machine.
     """
 
+    __slots__ = ()
+
     id: ClassVar[str]
     lossless: ClassVar[bool]
 
+    @abstractmethod
     def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:
         """Code a clip; ``(F, C)`` values, any float64 including NaN, infinities and -0.
 
@@ -73,8 +78,8 @@ class Codec(Protocol):
             When the model's payload does not follow the codec's format.
 
         """
-        ...
 
+    @abstractmethod
     def decode(
         self,
         header: bytes,
@@ -93,7 +98,10 @@ class Codec(Protocol):
             than a small multiple of (frames x columns x 8) bytes.
 
         """
-        ...
+
+    def largest_errors(self, columns: Sequence[Column]) -> list[float]:
+        """Give the error up to which each column may come back; infinite where none was asked."""
+        return [0.0 if self.lossless else inf] * len(columns)
 
 
 @runtime_checkable

@@ -10,6 +10,7 @@ from mocapress import codecs
 from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.diffma.codec import by_channel
 from mocapress.codecs.diffma.document import Document, Level, read_document
+from mocapress.codecs.fallback import naming_faults
 from mocapress.container import Kind, pack, unpack
 from mocapress.errors import (
     CorruptError,
@@ -135,10 +136,15 @@ def clip_to_json(clip: Clip, codec: DiffMA, *, layout: bytes = b"") -> bytes:
     UnsupportedError
         When a value is no finite number, which JSON cannot hold.
     VerificationError
-        When what was decoded is not what was encoded.
+        When the codec fails, or what was decoded is not what was encoded.
 
     """
     _refuse_not_finite(clip)
+    with naming_faults(codec):
+        return _checked_json(clip, codec, layout)
+
+
+def _checked_json(clip: Clip, codec: DiffMA, layout: bytes) -> bytes:
     plans, coding, channels = codec.plan(clip), codec.coding, by_channel(clip.values)
     levels = []
     for bound in codec.level_bounds:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mocapress.codecs.app.coding import Coding
 from mocapress.codecs.app.measures import average_prediction_error
 from mocapress.codecs.app.tables import ALPHA_TABLES
-from mocapress.codecs.contract import Chunk, Encoded, Model
+from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column
 
@@ -19,7 +19,7 @@ _DOUBLE_MANTISSA = 53
 
 
 @dataclass(frozen=True, slots=True)
-class App:
+class App(Codec):
     """The Alpha Parallelogram Predictor, lossless for any float64.
 
     Every value is predicted by the one before plus alpha times the step of its parent's column

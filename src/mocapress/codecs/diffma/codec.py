@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.codecs.contract import Chunk, Encoded, Model
+from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
 from mocapress.codecs.diffma import allocation
 from mocapress.codecs.diffma.coding import MOST_BITS, MOST_ORDER, MOST_WINDOW, Coding, Plan
 from mocapress.codecs.diffma.payload import (
@@ -25,7 +25,7 @@ _MOST_FRAMES = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
-class DiffMA:
+class DiffMA(Codec):
     """DiffMA, lossy: as published unless ``max_error``, ``order`` or ``per`` say otherwise."""
 
     id: ClassVar[str] = "diffma"
@@ -149,6 +149,10 @@ class DiffMA:
             except ValueError as error:
                 raise CorruptError(f"DiffMA chunk from frame {chunk.first}: {error}") from error
         return np.ascontiguousarray(np.concatenate([np.empty((0, len(columns))), *values]))
+
+    def largest_errors(self, columns: Sequence[Column]) -> list[float]:
+        """Give the error up to which each column may come back; infinite where none was asked."""
+        return [self._error_of(column.name) for column in columns]
 
     def level(self, bound: float) -> "DiffMA":
         """Give the codec of a level of detail: one bound, and nothing to choose."""

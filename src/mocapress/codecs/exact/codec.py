@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
-from mocapress.codecs.contract import Chunk, Encoded, Model
+from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
 from mocapress.codecs.exact.coupling_search import find_couplings
 from mocapress.codecs.exact.roles import Role, Roles, find_roles, read_roles, write_roles
 from mocapress.codecs.exact.skeletons import is_known
@@ -24,7 +24,7 @@ _FAST_LEVELS = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Exact:
+class Exact(Codec):
     """Prediction by several models that learn as they go, and coding on the decimal grid."""
 
     id: ClassVar[str] = "exact"

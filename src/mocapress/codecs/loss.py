@@ -1,0 +1,65 @@
+"""What a lossy codec lost, measured from what its decoder gives."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress.codecs.contract import Codec
+from mocapress.errors import VerificationError
+from mocapress.motion import Clip
+
+
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """How far decoded values are from the original ones."""
+
+    largest: tuple[float, ...]
+    """Largest error of each channel, in its unit; infinite where a NaN or infinity changed."""
+    psnr: float
+    """-10 log10 of the mean squared error over all finite values, dB; infinite without error."""
+
+    @classmethod
+    def of(cls, original: NDArray[np.float64], decoded: NDArray[np.float64]) -> Self:
+        """Measure the loss of (F, C) values."""
+        finite = np.isfinite(original)
+        same = (original == decoded) | (np.isnan(original) & np.isnan(decoded))
+        with np.errstate(invalid="ignore", over="ignore"):
+            errors = np.abs(original - decoded)
+            errors[same] = 0
+            errors[~finite & ~same | np.isnan(errors)] = np.inf
+            squares = errors[finite] ** 2
+            mean = float(squares.mean()) if squares.size else 0.0
+        largest = errors.max(axis=0, initial=0)
+        return cls(
+            tuple(float(error) for error in largest),
+            float(-10 * np.log10(mean)) if mean else float("inf"),
+        )
+
+    @property
+    def most(self) -> float:
+        """The largest error of any channel."""
+        return max(self.largest, default=0.0)
+
+
+def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss:
+    """Measure what a codec lost of a clip, and see that it kept the bounds that it has.
+
+    Raises
+    ------
+    VerificationError
+        When a channel's error is above its bound.
+
+    """
+    loss = Loss.of(clip.values, decoded)
+    for column, error, bound in zip(
+        clip.columns, loss.largest, codec.largest_errors(clip.columns), strict=True
+    ):
+        if error > bound:
+            raise VerificationError(
+                f"codec {codec.id} breaks its bound in channel {column.name}; please report this",
+                expected=f"errors up to {bound:g}",
+                found=f"{error:g}",
+            )
+    return loss
