@@ -73,7 +73,7 @@ class Opened:
     def _make_codec(self, stream: int) -> Codec:
         spec = self.streams[stream].codec
         try:
-            return codecs.made(spec.id, spec.parameters)
+            return codecs.from_parameters(spec.id, spec.parameters)
         except ParameterError as error:
             raise CorruptError(f"stream {self.streams[stream].name!r}: {error}") from error
 

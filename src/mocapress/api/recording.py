@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -10,12 +9,12 @@ from types import TracebackType
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from mocapress import codecs
 from mocapress.api.encoding import coded_chunks, stored_skeleton, stream_head
 from mocapress.api.opening import decoded
-from mocapress.codecs import DEFAULT_CODEC, Chunk, Codec
+from mocapress.codecs import DEFAULT_CODEC, Codec
 from mocapress.container import Head, MczWriter
 from mocapress.container.limits import most_values
 from mocapress.errors import ParameterError, UnsupportedError, VerificationError
@@ -39,7 +38,8 @@ class Recording:
         self._clip, self._codec = clip, codec
         self._name = next(iter(clip.streams))
         self._most = getattr(codec, "chunk", _USUAL_CHUNK)
-        self._waiting: list[np.ndarray] = []
+        self._waiting: list[NDArray[np.float64]] = []
+        self._held = 0
         self.frames = 0
         """Frames that are in the file."""
         try:
@@ -79,13 +79,14 @@ class Recording:
         if self._file is None:
             raise ParameterError("the recording is closed")
         self._waiting.append(values)
-        while sum(map(len, self._waiting)) >= self._most:
-            self._write(self._most)
+        self._held += len(values)
+        if self._held >= self._most:
+            self._write(self._held - self._held % self._most)
 
     def flush(self) -> None:
         """Put on the disk what was appended, though it does not fill a chunk."""
-        if left := sum(map(len, self._waiting)):
-            self._write(left)
+        if self._held:
+            self._write(self._held)
 
     def close(self) -> None:
         """Write what is left, and the file's end. Closing twice does nothing."""
@@ -111,11 +112,25 @@ class Recording:
         self.close()
 
     def _write(self, count: int) -> None:
-        """Write a chunk of so many of the frames that wait."""
+        """Write so many of the frames that wait."""
         rows = np.concatenate(self._waiting)
-        clip = self._clip.with_values(rows[:count])
+        for begin in range(0, count, self._most):
+            self._write_chunk(rows[begin : min(begin + self._most, count)])
+            self._waiting = [rows[begin + self._most :]]
+            self._held = len(self._waiting[0])
+
+    def _write_chunk(self, rows: NDArray[np.float64]) -> None:
+        clip = self._clip.with_values(rows)
         encoded = self._codec.encode(clip)
-        chunks = coded_chunks(
+        if self._codec.lossless:
+            back = decoded(
+                self._codec, encoded.header, encoded.chunks, self._head, None, len(rows)
+            )
+            if back.tobytes() != rows.tobytes():
+                raise VerificationError(f"codec {self._codec.id} does not give back the frames")
+        if (self.frames + len(rows)) * max(clip.channels, 1) > most_values(self._mcz.length):
+            raise UnsupportedError("more frames than a file of this size may hold")
+        for chunk in coded_chunks(
             clip,
             self._head,
             0,
@@ -124,18 +139,10 @@ class Recording:
             None,
             first=self.frames,
             own_header=True,
-        )
-        if self._codec.lossless:
-            back = decoded(self._codec, encoded.header, encoded.chunks, self._head, None, count)
-            if back.tobytes() != clip.values.tobytes():
-                raise VerificationError(f"codec {self._codec.id} does not give back the frames")
-        if (self.frames + count) * max(clip.channels, 1) > most_values(self._mcz.length):
-            raise UnsupportedError("the recording is too long for its size")
-        for chunk in chunks:
+        ):
             self._mcz.chunk(chunk)
         self._sync()
-        self._waiting = [rows[count:]]
-        self.frames += count
+        self.frames += len(rows)
 
     def _put(self, data: bytes) -> None:
         assert self._file is not None
@@ -199,18 +206,16 @@ def writer(
             raise ParameterError("rate", expected="a number above 0", found=str(rate))
         frame_time = 1 / exact
     made = codecs.codec(codec) if isinstance(codec, str) else codec
+    joints: dict[str, int] = {}
     named = tuple(
-        column if isinstance(column, Column) else _column(column, columns) for column in columns
+        column if isinstance(column, Column) else _column(column, joints) for column in columns
     )
     stream = Stream(np.empty((0, len(named))), named, frame_time)
     return Recording(path, Clip({name: stream}, skeleton), made, notes or {})
 
 
-def _column(name: str, columns: Sequence[Column | str]) -> Column:
+def _column(name: str, joints: dict[str, int]) -> Column:
     """Make a column of its name; joints are numbered in the order of appearance."""
-    joints = dict.fromkeys(
-        (other if isinstance(other, str) else other.name).rpartition(".")[0] for other in columns
-    )
     joint, _, kind = name.rpartition(".")
     unit = {"r": "deg", "t": "length"}.get(kind[:1], "") if len(kind) == 2 else ""
-    return Column(name, list(joints).index(joint), kind, unit)
+    return Column(name, joints.setdefault(joint, len(joints)), kind, unit)
