@@ -191,11 +191,13 @@ def _decimals(
 ) -> tuple[int, NDArray[np.int64], NDArray[np.bool_]]:
     """Find the fewest decimals with which most numbers are whole numbers of the last place."""
     best = 0, np.zeros(len(values), np.int64), np.zeros(len(values), np.bool_)
+    # No number this large has decimals; infinities and NaN are none of ours.
     magnitudes = np.abs(values)
+    magnitudes[~(magnitudes < 2.0**53)] = np.nan
     for decimals in range(_MOST_DECIMALS + 1):
         scaled = magnitudes * float(10**decimals)
         fits = scaled < 2.0**53
-        whole = np.rint(np.where(fits, scaled, 0))
+        whole = np.rint(np.where(fits, scaled, 0.0))
         fits &= whole / float(10**decimals) == magnitudes
         if decimals == 0 or fits.sum() > best[2].sum():
             best = decimals, whole.astype(np.int64), fits

@@ -104,7 +104,7 @@ class Opened:
         last = self.mcz.frames(stream) if last is None else last
         values = np.full((max(last - first, 0), len(head.columns)), np.nan)
         kept = np.zeros(len(values), np.bool_)
-        for group in _groups(self.mcz.chunks(stream), first, last, alone=self.salvage):
+        for group in _groups(self.mcz.of_stream[stream], first, last, alone=self.salvage):
             try:
                 for chunk, rows in self._decode(stream, group, last):
                     begin, end = max(chunk.first, first), min(chunk.first + len(rows), last)
@@ -120,20 +120,35 @@ class Opened:
                     raise
                 frames = f"frames {group[0].first} to {group[-1].last - 1}"
                 self.damage.append(Damage(f"{frames} of stream {head.name}", error))
+        if self.salvage:
+            self._name_gaps(stream, first, last)
         return Rows(values, kept)
+
+    def _name_gaps(self, stream: int, first: int, last: int) -> None:
+        """List frames of which there are no chunks."""
+        reached = 0
+        for begin, end in [
+            *((entry.first, entry.last) for entry in self.mcz.of_stream[stream]),
+            (self.mcz.frames(stream), 0),
+        ]:
+            lost = range(max(reached, first), min(begin, last))
+            if lost:
+                where = f"frames {lost[0]} to {lost[-1]} of stream {self.streams[stream].name}"
+                self.damage.append(Damage(where, CorruptError("no chunk has them")))
+            reached = end
 
     def coded(self, stream: int = 0) -> tuple[Chunk, ...]:
         """Give all chunks of a stream as its codec made them."""
         return tuple(
             Chunk(entry.first, entry.frames, self.mcz.read_chunk(entry).payload, entry.restart)
-            for entry in self.mcz.chunks(stream)
+            for entry in self.mcz.of_stream[stream]
         )
 
     def _decode(
         self, stream: int, group: Sequence[Entry], last: int
     ) -> list[tuple[Entry, NDArray[np.float64]]]:
         """Decode successive chunks with one codec header, the first of them a restart."""
-        if any(before.last != entry.first for before, entry in pairwise(group)):
+        if not group[0].restart or any(a.last != b.first for a, b in pairwise(group)):
             raise CorruptError(f"a chunk before frame {group[-1].first} is missing")
         read: list[CodedChunk] = [self.mcz.read_chunk(entry) for entry in group]
         chunks = [

@@ -1,6 +1,6 @@
 """Reading ``.mcz`` files, as docs/format.md lays them down."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
@@ -66,21 +66,19 @@ class Mcz:
     companions: list[Companion] = field(default_factory=list)
     entries: list[Entry] = field(default_factory=list)
     """All chunks, in the order of the file."""
+    of_stream: list[list[Entry]] = field(default_factory=list)
+    """The chunks of each stream, in the order of their frames."""
     closed: bool = True
     """Whether the file has its end; a recording that was killed has none."""
     damage: list[Damage] = field(default_factory=list)
     """What could not be read; empty unless the file was opened to be salvaged."""
-
-    def chunks(self, stream: int = 0) -> list[Entry]:
-        """Give a stream's chunks."""
-        return [entry for entry in self.entries if entry.stream == stream]
 
     def frames(self, stream: int = 0) -> int:
         """Give how many frames a stream has."""
         announced = self.head.streams[stream].frames if self.head else 0
         if announced is not None:
             return announced
-        return max((entry.last for entry in self.chunks(stream)), default=0)
+        return self.of_stream[stream][-1].last if self.of_stream[stream] else 0
 
     def read_chunk(self, entry: Entry) -> CodedChunk:
         """Read a chunk.
@@ -263,58 +261,50 @@ def _sections(data: bytes, collect: _Collector) -> Iterator[Section]:
 def _check(mcz: Mcz, collect: _Collector) -> None:
     """See that streams, chunks and announcements fit each other."""
     streams = mcz.head.streams if mcz.head else ()
-    if (mcz.original is None or not mcz.original.format) and not mcz.closed:
-        recording = bool(streams) and all(stream.frames is None for stream in streams)
-    else:
-        recording = False
+    recording = bool(streams) and not mcz.original and all(s.frames is None for s in streams)
     if not mcz.closed and not recording:
         error = CorruptError("the file is cut off", offset=mcz.size, expected="its end")
         collect.damaged("end", error)
     if mcz.head is None and (mcz.entries or (mcz.original and mcz.original.format)):
         collect.damaged("head", CorruptError("a motion file without a head"))
-        mcz.entries = []
-    mcz.entries = _in_order(mcz.entries, len(streams), collect)
-    limits.check_values(
-        sum(
-            mcz.frames(index) * max(len(stream.columns), 1) for index, stream in enumerate(streams)
-        ),
-        mcz.size,
-    )
+    mcz.of_stream = [[] for _ in streams]
+    for entry in mcz.entries:
+        _place(mcz, entry, collect)
+    values = 0
     for index, stream in enumerate(streams):
-        entries = mcz.chunks(index)
-        reached = entries[-1].last if entries else 0
-        if stream.frames is not None and reached != stream.frames:
-            error = CorruptError(
+        values += mcz.frames(index) * max(len(stream.columns), 1)
+        reached = mcz.of_stream[index][-1].last if mcz.of_stream[index] else 0
+        # What is missing of a file that is salvaged shows when its frames are asked for.
+        if stream.frames not in (None, reached) and not collect.salvage:
+            raise CorruptError(
                 f"chunks of stream {stream.name!r}",
                 expected=f"{stream.frames} frames",
                 found=str(reached),
             )
-            collect.damaged(f"stream {stream.name}", error)
+    limits.check_values(values, mcz.size)
 
 
-def _in_order(entries: Sequence[Entry], streams: int, collect: _Collector) -> list[Entry]:
-    """Give the chunks that belong to a stream and follow those before them."""
-    reached: dict[int, int] = {}
-    kept = []
-    for entry in entries:
-        expected = reached.get(entry.stream, 0)
-        if entry.stream >= streams:
-            error = CorruptError("a chunk of no stream", offset=entry.begin)
-        elif entry.first < expected or (entry.first > expected and not collect.salvage):
-            error = CorruptError(
-                "chunks in the wrong order",
-                offset=entry.begin,
-                expected=f"frame {expected}",
-                found=str(entry.first),
-            )
-        elif expected == 0 and not entry.restart and not collect.salvage:
-            error = CorruptError("a first chunk that needs one before", offset=entry.begin)
-        else:
-            reached[entry.stream] = entry.last
-            kept.append(entry)
-            continue
+def _place(mcz: Mcz, entry: Entry, collect: _Collector) -> None:
+    """Add a chunk to its stream, where it follows those before it."""
+    if entry.stream >= len(mcz.of_stream):
+        error = CorruptError("a chunk of no stream", offset=entry.begin)
         collect.damaged(f"chunk at byte {entry.begin}", error)
-    return kept
+        return
+    before = mcz.of_stream[entry.stream]
+    expected = before[-1].last if before else 0
+    if entry.first < expected or (entry.first > expected and not collect.salvage):
+        error = CorruptError(
+            "chunks in the wrong order",
+            offset=entry.begin,
+            expected=f"frame {expected}",
+            found=str(entry.first),
+        )
+        collect.damaged(f"chunk at byte {entry.begin}", error)
+    if not before and not entry.restart and not collect.salvage:
+        error = CorruptError("a first chunk that needs one before", offset=entry.begin)
+        collect.damaged(f"chunk at byte {entry.begin}", error)
+    if entry.first >= expected:
+        before.append(entry)
 
 
 def _name(tag: int) -> str:
