@@ -14,9 +14,11 @@ from mocapress.motion.convert import suggest_unit
 from mocapress.restore import chunks_of
 
 
-def describe_file(path: Path, *, asf_path: Path | None = None) -> dict[str, Any]:
+def describe_file(
+    path: Path, *, asf_path: Path | None = None, strict: bool = True
+) -> dict[str, Any]:
     """Describe a motion file."""
-    clip = api.read(path, asf_path=asf_path)
+    clip = api.read(path, asf_path=asf_path, strict=strict)
     return {"bytes": path.stat().st_size, "format": path.suffix.lower()[1:]} | describe_clip(clip)
 
 
@@ -76,7 +78,11 @@ def describe_json(blob: bytes) -> dict[str, Any]:
 
 
 def describe_mcz(
-    blob: bytes, *, asf_path: Path | None = None, models: Sequence[Place] = ()
+    blob: bytes,
+    *,
+    asf_path: Path | None = None,
+    models: Sequence[Place] = (),
+    strict: bool = True,
 ) -> dict[str, Any]:
     """Describe a ``.mcz`` file: what it holds, and where its bytes go.
 
@@ -101,13 +107,13 @@ def describe_mcz(
     }
     if mcz.kind is Kind.BYTES:
         return facts
-    columns = api.load(blob, slice(0), asf_path=asf_path)
+    columns = api.load(blob, slice(0), asf_path=asf_path, strict=strict)
     facts |= describe_clip(columns, mcz.frames)
     if mcz.frames and mcz.columns:
         facts["bits_per_sample"] = 8 * len(blob) / (mcz.frames * mcz.columns)
     measure = getattr(codecs.codec(mcz.codec), "measure", None)
     if measure is not None and facts["model_found"] is not False:
-        clip = api.load(blob, asf_path=asf_path, models=models)
+        clip = api.load(blob, asf_path=asf_path, models=models, strict=strict)
         facts |= measure(clip, Encoded(mcz.codec_header, chunks_of(mcz)), mcz.size)
     return facts
 

@@ -41,6 +41,10 @@ Models = Annotated[
         show_default=False,
     ),
 ]
+Lenient = Annotated[
+    bool,
+    typer.Option("--lenient", help="Read what is left of files that have lost frames."),
+]
 Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks.", hidden=True)]
 
 
@@ -181,6 +185,7 @@ def info(
     inputs: Inputs,
     asf: Asf = None,
     models: Models = None,
+    lenient: Lenient = False,
     jobs: Jobs = 1,
     json: Json = False,
     debug: Debug = False,
@@ -188,7 +193,7 @@ def info(
     """Say what is in motion files, compressed files and models."""
     from mocapress.cli.info import show_info
 
-    show_info(inputs, asf=asf, models=models or [], jobs=jobs, json=json)
+    show_info(inputs, asf=asf, models=models or [], strict=not lenient, jobs=jobs, json=json)
 
 
 class Target(StrEnum):
@@ -211,6 +216,7 @@ def convert(
         float | None,
         typer.Option("--fps", help="Frames per second of an AMC, which does not say.", min=1e-3),
     ] = None,
+    lenient: Lenient = False,
     jobs: Jobs = 1,
     force: Force = False,
     json: Json = False,
@@ -226,6 +232,7 @@ def convert(
         asf=asf,
         models=models or [],
         fps=fps,
+        strict=not lenient,
         jobs=jobs,
         force=force,
         json=json,
@@ -256,6 +263,7 @@ def view(
     browser: Annotated[
         bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
     ] = True,
+    lenient: Lenient = False,
     force: Force = False,
     debug: Debug = False,
 ) -> None:
@@ -270,5 +278,6 @@ def view(
         asf=asf,
         port=port,
         browser=browser,
+        strict=not lenient,
         force=force,
     )

@@ -10,7 +10,8 @@ from typing import Any, NoReturn
 
 import typer
 
-from mocapress.errors import MocapressError, ParameterError
+from mocapress.cli.warned import collecting, kept
+from mocapress.errors import MocapressError, MotionWarning, ParameterError
 
 STREAM = Path("-")
 
@@ -31,6 +32,7 @@ class Outcome:
     source: Path
     result: dict[str, Any] = field(default_factory=dict)
     error: MocapressError | OSError | MemoryError | None = None
+    warnings: list[MotionWarning] = field(default_factory=list)
 
 
 def find(inputs: Sequence[Path], suffixes: tuple[str, ...]) -> list[Job]:
@@ -86,16 +88,22 @@ def run(
     failure_code: int = 1,
 ) -> None:
     """Work on all jobs; report results and errors; end with the exit code."""
-    outcomes = _work_all(jobs, work, threads)
+    with collecting():
+        outcomes = _work_all(jobs, work, threads)
     failed = [outcome for outcome in outcomes if outcome.error]
     if json:
         rows = [
-            {"file": str(outcome.source)} | (_as_dict(outcome) if outcome.error else outcome.result)
+            {"file": str(outcome.source)}
+            | (_as_dict(outcome) if outcome.error else outcome.result)
+            | {"warnings": [warning.as_dict() for warning in outcome.warnings]}
             for outcome in outcomes
         ]
         typer.echo(jsonlib.dumps(rows, indent=1))
     else:
         done = [outcome for outcome in outcomes if not outcome.error]
+        for outcome in outcomes:
+            for warning in outcome.warnings:
+                typer.echo(f"mocapress: warning: {warning}", err=True)
         for outcome in done:
             if outcome.result.get("warning"):
                 typer.echo(f"mocapress: warning: {_with_file(outcome)}", err=True)
@@ -118,6 +126,7 @@ def _work_all(
             outcomes[index].result = work(jobs[index])
         except (MocapressError, OSError, MemoryError) as error:
             outcomes[index].error = error
+        outcomes[index].warnings = kept()
 
     if len(jobs) == 1:
         one(0)

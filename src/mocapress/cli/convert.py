@@ -23,6 +23,7 @@ def convert_files(
     asf: Path | None,
     models: Sequence[Path],
     fps: float | None,
+    strict: bool,
     jobs: int,
     force: bool,
     json: bool,
@@ -41,7 +42,7 @@ def convert_files(
 
     def work(job: Job) -> dict[str, Any]:
         place = target(job, output, rename, many=len(files) > 1)
-        clip = _read(job.source, asf, given)
+        clip = _read(job.source, asf, given, strict=strict)
         warning = None
         if to == "bvh":
             if clip.frame_time is None and fps is None:
@@ -66,13 +67,13 @@ def _kind_of(output: Path | None) -> str:
     return kind
 
 
-def _read(source: Path, asf: Path | None, models: Sequence[Place]) -> Clip:
+def _read(source: Path, asf: Path | None, models: Sequence[Place], *, strict: bool) -> Clip:
     if source == STREAM:
         raise ParameterError("convert reads files, not stdin")
     if source.suffix.lower() == ".mcz":
-        clip = api.load(source, asf_path=asf, models=models)
+        clip = api.load(source, asf_path=asf, models=models, strict=strict)
     else:
-        clip = api.read(source, asf_path=asf)
+        clip = api.read(source, asf_path=asf, strict=strict)
     if clip.skeleton is None:
         raise UnsupportedError(
             "no skeleton", file=str(source), expected="an ASF beside it, or --asf"

@@ -13,7 +13,13 @@ from mocapress.models import load_model
 
 
 def show_info(
-    inputs: Sequence[Path], *, asf: Path | None, models: Sequence[Path], jobs: int, json: bool
+    inputs: Sequence[Path],
+    *,
+    asf: Path | None,
+    models: Sequence[Path],
+    strict: bool,
+    jobs: int,
+    json: bool,
 ) -> None:
     """Describe motion files, compressed files and models."""
     files = find(inputs, (".amc", ".bvh", ".asf", ".mcz", ".mcm", *diffma_json.SUFFIXES))
@@ -24,12 +30,12 @@ def show_info(
         if data[:4] == mcz.MAGIC:
             beside = find_asf(job.source.with_suffix("")) if job.source != STREAM else None
             models = places_for(job, given)
-            return describe.describe_mcz(data, asf_path=asf or beside, models=models)
+            return describe.describe_mcz(data, asf_path=asf or beside, models=models, strict=strict)
         if data[:4] == mcm.MAGIC:
             return describe.describe_model(load_model(data), len(data))
         if diffma_json.is_json(data, job.source.name):
             return describe.describe_json(data)
-        return describe.describe_file(job.source, asf_path=asf)
+        return describe.describe_file(job.source, asf_path=asf, strict=strict)
 
     def show(outcomes: list[Outcome]) -> None:
         from rich.console import Console
@@ -39,7 +45,7 @@ def show_info(
         for outcome in outcomes:
             table = Table(title=str(outcome.source), show_header=False, title_justify="left")
             for key, value in outcome.result.items():
-                if value is not None and key != "warning":
+                if value is not None:
                     table.add_row(key.replace("_", " "), _text(value))
             console.print(table)
 

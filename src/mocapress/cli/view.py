@@ -7,6 +7,7 @@ from pathlib import Path
 import typer
 
 from mocapress.cli.batch import usage
+from mocapress.cli.warned import collecting, kept
 from mocapress.errors import MocapressError
 from mocapress.storage import write_whole
 from mocapress.viewer import embed, page
@@ -22,12 +23,18 @@ def view_files(
     asf: Path | None,
     port: int,
     browser: bool,
+    strict: bool,
     force: bool,
 ) -> None:
     """Serve a page that plays the files, or write it."""
     stated = None if lossless or export is None else max_error
     try:
-        clips = [embed.file(path, asf_path=asf, max_error=stated) for path in inputs]
+        with collecting():
+            clips = [
+                embed.file(path, asf_path=asf, max_error=stated, strict=strict) for path in inputs
+            ]
+        for warning in kept():
+            typer.echo(f"mocapress: warning: {warning}", err=True)
         document = page.document(clips, " · ".join(path.name for path in inputs) or "mocapress")
         if export:
             write_whole(export, document.encode(), force=force)
