@@ -24,7 +24,7 @@ from mocapress.motion.number_format import NumberFormat, NumberKind
 
 _MARK = re.compile(
     rb"^[ \t]*(?:"
-    rb"(?:ROOT|JOINT)[ \t]+(?P<name>[^\r\n{]*[^\s{])"
+    rb"(?:ROOT|JOINT)[ \t]+(?P<name>[^\r\n]+)"
     rb"|OFFSET[ \t]+(?P<x>[^\s{}]+)[ \t]+(?P<y>[^\s{}]+)[ \t]+(?P<z>[^\s{}]+)"
     rb"|CHANNELS[ \t]+(?P<channels>[^\r\n{}]*[^\s{}])"
     rb"|Frames[ \t]*:[ \t]*(?P<rows>\d+)"
@@ -108,7 +108,9 @@ def _pattern(
         elif code == NAME:
             reference = bytes([NAME])
             names = references.joints[joint : joint + 1]
-            same = [encoded(name, style.encoding) for name in names] == [text]
+            name = encoded(names[0], style.encoding) if names else b""
+            same = bool(names) and text.startswith(name)
+            text, end = (name, begin + len(name)) if same else (text, end)
             joint += 1
         elif code == CHANNELS:
             reference = bytes([CHANNELS])

@@ -1,0 +1,98 @@
+"""Motion files to clips and back."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from mocapress import formats
+from mocapress.container import diffma_json
+from mocapress.errors import UnsupportedError
+from mocapress.formats import Format
+from mocapress.motion import Clip
+from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, Named, Source
+from mocapress.source import read as read_motion
+from mocapress.storage import write_whole
+
+
+def read(source: Named, *, asf_path: str | Path | None = None, strict: bool = True) -> Clip:
+    """Read a motion file: of any format, or DiffMA JSON.
+
+    Parameters
+    ----------
+    source
+        A path, the contents, or a binary stream. A skeleton alone (ASF) gives a clip without
+        frames.
+    asf_path
+        The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one:
+        that of the same name, of the subject, or the only one in the folder, which is warned of.
+        ``metadata`` of the clip says which one was used (``skeleton``) and how it was found
+        (``skeleton_found``). One that is broken or does not fit is left away with a warning.
+    strict
+        Whether a file that has lost frames is refused: one with fewer rows than it declares, or
+        with rows that cannot be read. With ``strict=False`` it is read as far as possible, with a
+        ``MotionWarning``; a row that cannot be read between others keeps the values of the one
+        before. What loses nothing, such as a row more than declared, always is a warning.
+
+    Raises
+    ------
+    FormatError
+        When the file does not follow its format, or the given ASF cannot be read or is another's:
+        with file, place, expected and found.
+    OSError
+        When it cannot be opened.
+
+    """
+    return read_source(Source(source), asf_path, strict=strict)
+
+
+def read_source(source: Source, asf_path: str | Path | None = None, *, strict: bool = True) -> Clip:
+    """Read a motion file; see ``read``."""
+    if source.kind == DIFFMA_JSON:
+        return diffma_json.json_to_clip(source.data)
+    return read_motion(source, asf_path, strict=strict)
+
+
+def write(clip: Clip, path: str | Path, *, to: str | None = None, force: bool = False) -> None:
+    """Write a clip to a motion file, or as DiffMA JSON.
+
+    The clip is converted to what the format can hold. What belongs beside the file is written,
+    too: the skeleton of an AMC as an ASF of the same name.
+
+    Parameters
+    ----------
+    clip
+        With a skeleton, except for formats that need none.
+    path
+        Its ending names the format.
+    to
+        Id of the format, whatever the ending.
+    force
+        Whether to overwrite.
+
+    Raises
+    ------
+    ExistsError
+        When a file exists and ``force`` is not given.
+    UnsupportedError
+        When there is no such format to write in, or the clip lacks what it needs.
+
+    """
+    path = Path(path)
+    if to is None and path.name.lower().endswith(JSON_SUFFIXES):
+        write_whole(path, diffma_json.named(path.name, diffma_json.to_json(clip)), force=force)
+        return
+    of = formats.by_id(to) if to else formats.by_name(path.name)
+    if of is None:
+        known = formats.names(formats.writable())
+        raise UnsupportedError("no format for clips", expected=known, found=repr(path.suffix))
+    (_, data), *beside = printed(clip, of).items()
+    for suffix, more in beside:
+        write_whole(path.with_suffix(suffix), more, force=force)
+    write_whole(path, data, force=force)
+
+
+def printed(clip: Clip, of: Format) -> Mapping[str, bytes]:
+    """Print a clip in a format: contents by suffix, the file itself first."""
+    if of.write is None:
+        known = formats.names(formats.writable())
+        raise UnsupportedError("no format for clips", expected=known, found=of.name)
+    return of.write(of.fit(clip))
