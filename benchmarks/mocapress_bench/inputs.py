@@ -7,6 +7,8 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from mocapress.formats import names, readable, suffixes
+
 SAMPLES = Path(__file__).parents[2] / "samples"
 
 Corpus = Annotated[
@@ -24,7 +26,8 @@ Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks.", hidden=
 
 def clips_in(folder: Path) -> list[Path]:
     """Find the motion files below a folder."""
-    return sorted(p for p in folder.rglob("*") if p.suffix.lower() in (".amc", ".bvh"))
+    endings = suffixes(readable())
+    return sorted(path for path in folder.rglob("*") if path.name.lower().endswith(endings))
 
 
 def clips_named(corpus: Path | None) -> tuple[list[Path], Path]:
@@ -34,7 +37,7 @@ def clips_named(corpus: Path | None) -> tuple[list[Path], Path]:
         usage("name a folder of clips")
     paths = clips_in(folder) if folder.is_dir() else [folder]
     if not paths:
-        usage(f"no AMC or BVH files in {folder}")
+        usage(f"no {names(readable())} files in {folder}")
     return paths, folder if folder.is_dir() else folder.parent
 
 

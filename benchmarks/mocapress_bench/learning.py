@@ -8,9 +8,9 @@ from pathlib import Path
 from mocapress.codecs import Codec, Model
 from mocapress.codecs.contract import Trainable
 from mocapress.errors import FormatError, ParameterError
-from mocapress.formats.files import read
 from mocapress.models import load_model, train
 from mocapress.motion import Clip
+from mocapress.source import Source, read
 from mocapress_bench.contenders import Tool, contenders
 from mocapress_bench.rivals import Rival
 
@@ -110,7 +110,7 @@ def _bounded(paths: Sequence[Path], most_frames: int) -> Iterator[Clip]:
         if left <= 0:
             return
         try:
-            clip = read(path)
+            clip = read(Source(path))
         except FormatError:
             continue  # said when it is measured
         yield clip.with_values(clip.values[:left])

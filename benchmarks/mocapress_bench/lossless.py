@@ -13,11 +13,10 @@ import numpy as np
 from mocapress.codecs import Codec, Model, spec
 from mocapress.container import Kind, pack, pack_file, parse, unpack
 from mocapress.errors import FormatError
-from mocapress.formats import asf
-from mocapress.formats.files import find_asf, sniff, split
 from mocapress.formats.layout import Layout
 from mocapress.models import model_bytes
 from mocapress.restore import chunks_of
+from mocapress.source import Source
 from mocapress_bench.contenders import Tool, contenders
 from mocapress_bench.learning import Learned
 from mocapress_bench.rivals import Rival
@@ -89,26 +88,20 @@ def peak_memory(path: Path, contender: str) -> dict[str, float]:
 
 
 def _shape(data: bytes, path: Path) -> Row:
-    kind = sniff(data, path.name)
-    if kind not in ("amc", "bvh"):
-        raise FormatError("not a motion file", file=str(path))
-    clip = split(data, kind, file=str(path)).clip
-    return {"format": kind, "frames": clip.frames, "channels": clip.channels}
+    source = Source(data, str(path))
+    clip = source.split().clip
+    return {"format": source.kind, "frames": clip.frames, "channels": clip.channels}
 
 
 def _codec_row(
     data: bytes, path: Path, codec: Codec, repeat: int, model: Model | None = None
 ) -> Row:
-    kind = sniff(data, path.name) or ""
-    beside = find_asf(path) if kind == "amc" else None
-    skeleton = asf.parse_asf(beside.read_bytes(), str(beside)) if beside else None
-    (clip, layout, _), split_s = _best(
-        lambda: split(data, kind, skeleton=skeleton, file=str(path)), repeat
-    )
+    source = Source(path)
+    (clip, layout, _), split_s = _best(source.split, repeat)
     encoded, encode_s = _best(lambda: codec.encode(clip, model=model), repeat)
     blob, pack_s = _best(
         lambda: pack_file(
-            kind=Kind[kind.upper()],
+            kind=Kind[layout.format.upper()],
             size=len(data),
             digest=hashlib.sha256(data).digest(),
             payloads=[(chunk.frames, chunk.restart, chunk.payload) for chunk in encoded.chunks],
@@ -150,8 +143,7 @@ def _open(blob: bytes) -> tuple[Any, Layout]:
 
 
 def _rival_row(data: bytes, path: Path, rival: Rival, repeat: int) -> Row:
-    kind = sniff(data, path.name) or ""
-    (clip, layout, _), split_s = _best(lambda: split(data, kind, file=str(path)), repeat)
+    (clip, layout, _), split_s = _best(lambda: Source(data, str(path)).split(), repeat)
     packed, encode_s = _best(lambda: rival.compress(clip.values), repeat)
     values, decode_s = _best(lambda: rival.decompress(packed, (clip.frames, clip.channels)), repeat)
     restored, join_s = _best(lambda: layout.join(values), repeat)

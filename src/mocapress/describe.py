@@ -6,20 +6,18 @@ from typing import Any
 
 from mocapress import api, codecs
 from mocapress.codecs import Encoded, Model
-from mocapress.container import Kind, diffma_json, parse
+from mocapress.container import diffma_json
 from mocapress.errors import MissingModelError
 from mocapress.models import Place, find_model
 from mocapress.motion import Clip
 from mocapress.motion.convert import suggest_unit
-from mocapress.restore import chunks_of
+from mocapress.source import Source
 
 
-def describe_file(
-    path: Path, *, asf_path: Path | None = None, strict: bool = True
-) -> dict[str, Any]:
+def describe_file(source: Source, *, asf_path: Path | None = None) -> dict[str, Any]:
     """Describe a motion file."""
-    clip = api.read(path, asf_path=asf_path, strict=strict)
-    return {"bytes": path.stat().st_size, "format": path.suffix.lower()[1:]} | describe_clip(clip)
+    clip = api.read_source(source, asf_path)
+    return {"bytes": source.size, "format": source.kind} | describe_clip(clip)
 
 
 def describe_clip(clip: Clip, frames: int | None = None) -> dict[str, Any]:
@@ -39,6 +37,8 @@ def describe_clip(clip: Clip, frames: int | None = None) -> dict[str, Any]:
         "frame_time": None if clip.frame_time is None else str(clip.frame_time),
         "seconds": seconds,
         "joints": len(skeleton.joints) if skeleton else None,
+        "skeleton": clip.metadata.get("skeleton"),
+        "skeleton_found": clip.metadata.get("skeleton_found"),
         "number_formats": ", ".join(sorted(kinds)) or None,
         "unit_suggested": (suggest_unit(skeleton) or "nothing usual") if skeleton else None,
     }
@@ -78,43 +78,50 @@ def describe_json(blob: bytes) -> dict[str, Any]:
 
 
 def describe_mcz(
-    blob: bytes,
-    *,
-    asf_path: Path | None = None,
-    models: Sequence[Place] = (),
-    strict: bool = True,
+    source: Source, *, asf_path: Path | None = None, models: Sequence[Place] = ()
 ) -> dict[str, Any]:
     """Describe a ``.mcz`` file: what it holds, and where its bytes go.
 
     Of codecs that measure themselves, the measures follow: MCR, TCR and APE of APP (Eqs. 11-13).
     A file whose model is missing is described without these.
     """
-    mcz = parse(blob)
-    payloads = sum(entry.length for entry in mcz.index)
+    opened = api.Opened(source, models)
+    mcz, original = opened.mcz, opened.mcz.original
+    main = opened.streams[0] if opened.streams else None
+    model = main.model if main else b""
     facts: dict[str, Any] = {
-        "format": mcz.kind.name.lower(),
-        "codec": mcz.codec or "general-purpose",
-        "model": mcz.model.hex() or None,
-        "model_found": _found(mcz.model, models) if mcz.model else None,
-        "raw_bytes": mcz.size,
-        "compressed_bytes": len(blob),
-        "ratio": mcz.size / len(blob),
-        "payload_bytes": payloads,
-        "layout_bytes": len(mcz.layout),
-        "skeleton_bytes": len(mcz.skeleton) or None,
-        "chunks": len(mcz.index),
-        "sha256": mcz.digest.hex(),
+        "format": (original.format or "bytes") if original else "recording",
+        "name": (original.name if original else "") or None,
+        "codec": codecs.spec(opened.codec()) if main else "general-purpose",
+        "model": model.hex() or None,
+        "model_found": _found(model, models) if model else None,
+        "raw_bytes": original.size if original else None,
+        "compressed_bytes": mcz.size,
+        "ratio": original.size / mcz.size if original else None,
+        "chunk_bytes": sum(entry.end - entry.begin for entry in mcz.entries) or None,
+        "layout_bytes": len(original.packed) if original else None,
+        "companions": ", ".join(companion.name for companion in mcz.companions) or None,
+        "chunks": len(mcz.entries),
+        "closed": mcz.closed,
+        "sha256": original.digest.hex() if original else None,
+        "notes": dict(mcz.notes) or None,
     }
-    if mcz.kind is Kind.BYTES:
+    if main is None:
         return facts
-    columns = api.load(blob, slice(0), asf_path=asf_path, strict=strict)
-    facts |= describe_clip(columns, mcz.frames)
-    if mcz.frames and mcz.columns:
-        facts["bits_per_sample"] = 8 * len(blob) / (mcz.frames * mcz.columns)
-    measure = getattr(codecs.codec(mcz.codec), "measure", None)
-    if measure is not None and facts["model_found"] is not False:
-        clip = api.load(blob, asf_path=asf_path, models=models, strict=strict)
-        facts |= measure(clip, Encoded(mcz.codec_header, chunks_of(mcz)), mcz.size)
+    if len(opened.streams) > 1:
+        facts["streams"] = {
+            stream.name: f"{mcz.frames(index)} x {len(stream.columns)}"
+            for index, stream in enumerate(opened.streams)
+        }
+    frames = mcz.frames()
+    columns = api.load_source(source, slice(0), asf_path=asf_path)
+    facts |= describe_clip(columns, frames)
+    if frames and main.columns:
+        facts["bits_per_sample"] = 8 * mcz.size / (frames * len(main.columns))
+    measure = getattr(opened.codec(), "measure", None)
+    if original is not None and measure is not None and facts["model_found"] is not False:
+        clip = columns.with_values(opened.rows().values)
+        facts |= measure(clip, Encoded(main.header, opened.coded()), original.size)
     return facts
 
 

@@ -7,12 +7,11 @@ from pathlib import Path
 
 from mocapress import codecs
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
-from mocapress.codecs.fallback import naming_faults
 from mocapress.container import Mcm, pack_model, parse_model, peek_model
 from mocapress.container.mcm import LONGEST_FILE, LONGEST_HEADER
 from mocapress.errors import CorruptError, MissingModelError, MocapressError, ParameterError
-from mocapress.formats.files import read
 from mocapress.motion import Clip
+from mocapress.source import Named, Source, read
 from mocapress.storage import write_whole
 
 __all__ = ["Place", "find_model", "load_model", "model_bytes", "save_model", "train"]
@@ -24,13 +23,13 @@ Place = Model | str | Path
 """Where a model may be: it itself, its file, or a folder with ``.mcm`` files."""
 
 
-def train(sources: Iterable[str | Path | Clip], codec: str | Codec = DEFAULT_CODEC) -> Model:
+def train(sources: Iterable[Named | Clip], codec: str | Codec = DEFAULT_CODEC) -> Model:
     """Learn a model from clips, for compressing clips like these.
 
     Parameters
     ----------
     sources
-        Clips, or paths of AMC and BVH files; read one at a time.
+        Clips, or motion files: paths, contents or streams; read one at a time.
     codec
         A codec that learns, or its text.
 
@@ -40,18 +39,21 @@ def train(sources: Iterable[str | Path | Clip], codec: str | Codec = DEFAULT_COD
         When the codec does not learn, or there are no clips.
     FormatError
         When a file cannot be read.
-    VerificationError
-        When the codec fails.
 
     """
-    made = codecs.codec(codec) if isinstance(codec, str) else codec
-    learner = codecs.learner(made)
-    clips = (source if isinstance(source, Clip) else read(source) for source in sources)
+    learner = codecs.learner(codecs.codec(codec) if isinstance(codec, str) else codec)
+    clips = (source if isinstance(source, Clip) else _read(source) for source in sources)
     first = next(clips, None)
     if first is None:
         raise ParameterError("nothing to learn from", expected="at least one clip")
-    with naming_faults(made):
-        return learner.train(chain([first], clips))
+    return learner.train(chain([first], clips))
+
+
+def _read(named: Named) -> Clip:
+    source = Source(named)
+    clip = read(source)
+    source.report()
+    return clip
 
 
 def model_bytes(model: Model) -> bytes:

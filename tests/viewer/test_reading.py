@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 import mocapress as mp
-from mocapress.formats.files import find_asf
 
 SCRIPT = Path(__file__).with_name("positions.mjs")
 SAMPLES = Path(__file__).parents[2] / "samples"
@@ -30,9 +29,9 @@ def read_by_page(*paths: Path) -> Any:
 
 
 def check(path: Path) -> None:
-    beside = find_asf(path) if path.suffix.lower() == ".amc" else None
-    (made,) = read_by_page(path, *([beside] if beside else []))["clips"]
     clip = mp.read(path)
+    beside = clip.metadata.get("skeleton")
+    (made,) = read_by_page(path, *([Path(beside)] if beside else []))["clips"]
     assert made["names"] == [column.name for column in clip.columns]
     assert made["length"] == clip.frames
     assert made["frameTime"] == (float(clip.frame_time) if clip.frame_time is not None else None)

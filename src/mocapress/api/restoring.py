@@ -12,12 +12,10 @@ from mocapress.container import Companion, Damage, Original, StreamHead, diffma_
 from mocapress.errors import CorruptError, MocapressError, MotionWarning, UnsupportedError
 from mocapress.formats.layout import Layout
 from mocapress.formats.layout_record import read_layout
+from mocapress.formats.number_formats import SHORTEST
 from mocapress.formats.patterns import References
 from mocapress.models import Place
-from mocapress.motion.number_format import NumberFormat, NumberKind
 from mocapress.source import DIFFMA_JSON, Named, Source
-
-_SHORTEST = NumberFormat(NumberKind.SHORTEST)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +34,8 @@ class Restored:
     """What is lost of it."""
 
 
-def decompress(source: Named, *, models: Sequence[Place] = (), salvage: bool = False) -> bytes:
+def decompress(
+    source: Named | Source, *, models: Sequence[Place] = (), salvage: bool = False) -> bytes:
     """Give the original file's bytes (for a lossy codec: the decoded values in its layout).
 
     Parameters
@@ -60,7 +59,7 @@ def decompress(source: Named, *, models: Sequence[Place] = (), salvage: bool = F
         When there is no original file: the ``.mcz`` was recorded, or made of a clip.
 
     """
-    opened = Source(source)
+    opened = source if isinstance(source, Source) else Source(source)
     restored = restore(opened, models, salvage=salvage)
     opened.report()
     return restored.data
@@ -123,7 +122,7 @@ def layout_of(opened: Opened, original: Original, rows: int) -> Layout:
         original.layout(),
         original.format,
         opened.mcz.frames(),
-        tuple(column.decimal or _SHORTEST for column in stream.columns),
+        tuple(column.decimal or SHORTEST for column in stream.columns),
         references(opened, stream),
         limits.most_layout(original.size),
         rows,

@@ -196,19 +196,13 @@ def info(
     show_info(inputs, asf=asf, models=models or [], strict=not lenient, jobs=jobs, json=json)
 
 
-class Target(StrEnum):
-    """Formats to convert to."""
-
-    BVH = "bvh"
-    AMC = "amc"
-
-
 @app.command()
 def convert(
     inputs: Inputs,
     output: Output = None,
     to: Annotated[
-        Target | None, typer.Option("--to", help="Format; else what the output's name says.")
+        str | None,
+        typer.Option("--to", help="Format, e.g. bvh or amc; else what the output's name says."),
     ] = None,
     asf: Asf = None,
     models: Models = None,
@@ -228,7 +222,7 @@ def convert(
     convert_files(
         inputs,
         output,
-        to and to.value,
+        to,
         asf=asf,
         models=models or [],
         fps=fps,

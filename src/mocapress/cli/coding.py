@@ -4,23 +4,21 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from mocapress import api, codecs
-from mocapress.cli.batch import STREAM, Job, Outcome, contents, find, run, target, usage
+from mocapress.cli.batch import STREAM, Job, Outcome, find, opened, run, target, usage, warning_of
 from mocapress.cli.models import open_model, open_models, places_for
 from mocapress.codecs import Codec
 from mocapress.codecs.diffma import DiffMA
 from mocapress.container import diffma_json
 from mocapress.errors import ParameterError
-from mocapress.formats.asf import parse_asf
-from mocapress.formats.files import find_asf, sniff
+from mocapress.formats import formats, suffixes
+from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES
 from mocapress.storage import write_whole
 
-_MOTION = (".amc", ".bvh", ".asf")
-_COMPRESSED = (".mcz", *diffma_json.SUFFIXES)
+_COMPRESSED = (".mcz", *JSON_SUFFIXES)
 
 
 def compress_files(
@@ -52,41 +50,27 @@ def compress_files(
             raise ParameterError(f"{made.id} makes no {to}", expected="diffma")
     except ParameterError as error:
         usage(f"--codec: {error}")
-    files = find(inputs, _MOTION[:2] if isinstance(made, DiffMA) else _MOTION)
+    kinds = [of for of in formats() if of.split or (of.read_skeleton and made.lossless)]
+    files = find(inputs, suffixes(kinds))
 
     def work(job: Job) -> dict[str, Any]:
         place = target(job, output, partial(_compressed_name, to=to), many=len(files) > 1)
-        data = contents(job.source)
-        name = str(job.source) if job.source != STREAM else ""
-        beside = asf
-        if beside is None and job.source != STREAM and sniff(data, job.source.name) == "amc":
-            beside = find_asf(job.source)
-        skeleton = beside.read_bytes() if beside else b""
-        warning, loss = None, None
+        source, warning = opened(job), None
         if to == "mcz":
-            compressed = api.compress_bytes(
-                data,
-                made,
-                name=name,
-                asf_data=skeleton,
-                embed_asf=embed_asf,
-                model=learned,
+            compressed = api.compress_source(
+                source, made, asf_path=asf, embed_asf=embed_asf, model=learned
             )
-            blob, warning, loss = compressed.blob, compressed.warning, compressed.loss
+            blob, warning = compressed.blob, compressed.warning
         else:
             assert isinstance(made, DiffMA)
-            joints = parse_asf(skeleton, str(beside)) if skeleton else None
-            text = diffma_json.file_to_json(data, made, name=name, skeleton=joints)
-            blob = diffma_json.named(to, text)
+            blob = diffma_json.named(to, diffma_json.file_to_json(source, made, asf_path=asf))
         _put(place, blob, force=force)
         return {
             "output": str(place),
-            "raw_bytes": len(data),
+            "raw_bytes": source.size,
             "compressed_bytes": len(blob),
-            "ratio": round(len(data) / len(blob), 3),
-            "largest_error": loss.most if loss else None,
-            "psnr": loss.psnr if loss and isfinite(loss.psnr) else None,
-            "warning": warning,
+            "ratio": round(source.size / len(blob), 3),
+            "warning": warning_of(source, warning),
         }
 
     run(files, work, threads=jobs, json=json, show=_show_sizes)
@@ -105,15 +89,15 @@ def decompress_files(
     files, given = find(inputs, _COMPRESSED), open_models(models)
 
     def work(job: Job) -> dict[str, Any]:
-        blob, many = contents(job.source), len(files) > 1
-        if diffma_json.is_json(blob, job.source.name):
-            kind, data = diffma_json.json_to_file(blob)
+        source, many = opened(job), len(files) > 1
+        if source.kind == DIFFMA_JSON:
+            kind, data = diffma_json.json_to_file(source.data)
             place = target(job, output, partial(_original_name, kind=kind), many=many)
         else:
             place = target(job, output, partial(_original_name, kind=""), many=many)
-            data = api.decompress(blob, models=places_for(job, given))
+            data = api.decompress(source, models=places_for(job, given))
         _put(place, data, force=force)
-        return {"output": str(place), "raw_bytes": len(data), "compressed_bytes": len(blob)}
+        return {"output": str(place), "raw_bytes": len(data), "compressed_bytes": source.size}
 
     run(files, work, threads=jobs, json=json, show=_show_sizes)
 
@@ -123,10 +107,10 @@ def verify_files(inputs: Sequence[Path], *, models: Sequence[Path], jobs: int, j
     files, given = find(inputs, _COMPRESSED), open_models(models)
 
     def work(job: Job) -> dict[str, Any]:
-        data = contents(job.source)
-        if diffma_json.is_json(data, job.source.name):  # a layout is not needed to be sound
-            return {"raw_bytes": diffma_json.json_to_clip(data).values.nbytes, "ok": True}
-        restored = api.decompress(data, models=places_for(job, given))
+        source = opened(job)
+        if source.kind == DIFFMA_JSON:  # a layout is not needed to be sound
+            return {"raw_bytes": diffma_json.json_to_clip(source.data).values.nbytes, "ok": True}
+        restored = api.decompress(source, models=places_for(job, given))
         return {"raw_bytes": len(restored), "ok": True}
 
     def show(outcomes: list[Outcome]) -> None:
@@ -138,7 +122,7 @@ def verify_files(inputs: Sequence[Path], *, models: Sequence[Path], jobs: int, j
 
 def _kind_of(output: Path | None) -> str:
     name = output.name.lower() if output else ""
-    return next((s[1:] for s in reversed(diffma_json.SUFFIXES) if name.endswith(s)), "mcz")
+    return next((s[1:] for s in reversed(JSON_SUFFIXES) if name.endswith(s)), "mcz")
 
 
 def _aimed(codec: Codec, target_psnr: float | None) -> Codec:
@@ -178,9 +162,7 @@ def _show_sizes(outcomes: list[Outcome]) -> None:
         return
     for outcome in outcomes:
         raw, small = outcome.result["raw_bytes"], outcome.result["compressed_bytes"]
-        lost = outcome.result.get("largest_error")
-        errors = "" if lost is None else f", errors up to {lost:.3g}"
-        print(f"{outcome.result['output']}: {raw} <-> {small} bytes, {raw / small:.2f} : 1{errors}")
+        print(f"{outcome.result['output']}: {raw} <-> {small} bytes, {raw / small:.2f} : 1")
     if len(outcomes) > 1:
         raw = sum(outcome.result["raw_bytes"] for outcome in outcomes)
         small = sum(outcome.result["compressed_bytes"] for outcome in outcomes)

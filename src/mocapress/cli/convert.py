@@ -6,13 +6,15 @@ from pathlib import Path
 from typing import Any
 
 from mocapress import api
-from mocapress.cli.batch import STREAM, Job, Outcome, find, run, target, usage
+from mocapress.cli.batch import STREAM, Job, Outcome, find, opened, run, target, usage, warning_of
 from mocapress.cli.models import open_models
 from mocapress.container import diffma_json
-from mocapress.errors import ParameterError, UnsupportedError
-from mocapress.formats.files import format_clip
+from mocapress.errors import UnsupportedError
+from mocapress.formats import Format, by_name, readable, suffixes, writable
 from mocapress.models import Place
-from mocapress.motion import Clip, convert
+from mocapress.motion import Clip
+from mocapress.motion.convert import DEFAULT_FPS, frame_time_of
+from mocapress.source import MCZ, Source
 
 
 def convert_files(
@@ -23,60 +25,66 @@ def convert_files(
     asf: Path | None,
     models: Sequence[Path],
     fps: float | None,
-    strict: bool,
     jobs: int,
     force: bool,
     json: bool,
 ) -> None:
     """Convert files; ``.mcz`` and DiffMA JSON are taken, too."""
-    to = to or _kind_of(output)
-    files = find(inputs, (".amc",) if to == "bvh" else (".bvh",))
+    target_format = _target(to, output)
+    files = find(inputs, suffixes(of for of in readable() if of is not target_format))
     given = open_models(models)
 
     def rename(source: Path) -> Path:
         packed = source.suffix.lower() == ".mcz"
         name = diffma_json.stem(source.stem if packed else source.name)
-        return source.with_name(
-            f"{Path(name).stem if packed or name == source.name else name}.{to}"
-        )
+        kept = Path(name).stem if packed or name == source.name else name
+        return source.with_name(f"{kept}{target_format.suffixes[0]}")
 
     def work(job: Job) -> dict[str, Any]:
         place = target(job, output, rename, many=len(files) > 1)
-        clip = _read(job.source, asf, given, strict=strict)
+        source = opened(job)
+        clip = _read(source, asf, given)
         warning = None
-        if to == "bvh":
-            if clip.frame_time is None and fps is None:
-                warning = f"an AMC does not say its frame rate; taken as {convert.DEFAULT_FPS:g}"
-            clip = convert.to_bvh_clip(clip, fps)
-        result = {"output": str(place), "frames": clip.frames, "warning": warning}
+        if fps is not None:
+            clip = clip.with_frame_time(frame_time_of(fps))
+        elif clip.frame_time is None and target_format.timed:
+            warning = f"the file does not say its frame rate; taken as {DEFAULT_FPS:g}"
+        result = {
+            "output": str(place),
+            "frames": clip.frames,
+            "skeleton": clip.metadata.get("skeleton"),
+            "skeleton_found": clip.metadata.get("skeleton_found"),
+            "warning": warning_of(source, warning),
+        }
         if place == STREAM:
-            made = clip if to == "bvh" else convert.to_amc_clip(clip)
-            sys.stdout.buffer.write(format_clip(made, to))
+            sys.stdout.buffer.write(next(iter(api.printed(clip, target_format).values())))
         else:
             place.parent.mkdir(parents=True, exist_ok=True)
-            api.write(clip, place, force=force)
+            api.write(clip, place, to=target_format.id, force=force)
         return result
 
     run(files, work, threads=jobs, json=json, show=_show)
 
 
-def _kind_of(output: Path | None) -> str:
-    kind = output.suffix.lower()[1:] if output else ""
-    if kind not in ("bvh", "amc"):
-        usage("say what to convert to: --to, or an output that ends in .bvh or .amc")
-    return kind
+def _target(to: str | None, output: Path | None) -> Format:
+    known = [of for of in writable() if to is None or of.id == to]
+    named = by_name(output.name) if output else None
+    found = (known[0] if known else None) if to else named
+    if found is None or found not in known:
+        ids = ", ".join(of.id for of in writable())
+        usage(f"say what to convert to: --to ({ids}), or an output with the ending of one of these")
+    return found
 
 
-def _read(source: Path, asf: Path | None, models: Sequence[Place], *, strict: bool) -> Clip:
-    if source == STREAM:
-        raise ParameterError("convert reads files, not stdin")
-    if source.suffix.lower() == ".mcz":
-        clip = api.load(source, asf_path=asf, models=models, strict=strict)
+def _read(source: Source, asf: Path | None, models: Sequence[Place]) -> Clip:
+    if source.kind == MCZ:
+        clip = api.load_source(source, asf_path=asf, models=models)
     else:
-        clip = api.read(source, asf_path=asf, strict=strict)
+        clip = api.read_source(source, asf)
     if clip.skeleton is None:
+        more = "".join(f" ({warning})" for warning in source.warnings)
         raise UnsupportedError(
-            "no skeleton", file=str(source), expected="an ASF beside it, or --asf"
+            "no skeleton", file=source.name or None, expected=f"one beside it, or --asf{more}"
         )
     return clip
 

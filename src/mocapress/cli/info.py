@@ -5,37 +5,32 @@ from pathlib import Path
 from typing import Any
 
 from mocapress import describe
-from mocapress.cli.batch import STREAM, Job, Outcome, contents, find, run
+from mocapress.cli.batch import Job, Outcome, find, opened, run, warning_of
 from mocapress.cli.models import open_models, places_for
-from mocapress.container import diffma_json, mcm, mcz
-from mocapress.formats.files import find_asf
+from mocapress.formats import formats, suffixes
 from mocapress.models import load_model
+from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, MCM, MCZ
 
 
 def show_info(
-    inputs: Sequence[Path],
-    *,
-    asf: Path | None,
-    models: Sequence[Path],
-    strict: bool,
-    jobs: int,
-    json: bool,
+    inputs: Sequence[Path], *, asf: Path | None, models: Sequence[Path], jobs: int, json: bool
 ) -> None:
     """Describe motion files, compressed files and models."""
-    files = find(inputs, (".amc", ".bvh", ".asf", ".mcz", ".mcm", *diffma_json.SUFFIXES))
+    files = find(inputs, (*suffixes(formats()), ".mcz", ".mcm", *JSON_SUFFIXES))
     given = open_models(models)
 
     def work(job: Job) -> dict[str, Any]:
-        data = contents(job.source)
-        if data[:4] == mcz.MAGIC:
-            beside = find_asf(job.source.with_suffix("")) if job.source != STREAM else None
+        source = opened(job)
+        if source.kind == MCZ:
             models = places_for(job, given)
-            return describe.describe_mcz(data, asf_path=asf or beside, models=models, strict=strict)
-        if data[:4] == mcm.MAGIC:
-            return describe.describe_model(load_model(data), len(data))
-        if diffma_json.is_json(data, job.source.name):
-            return describe.describe_json(data)
-        return describe.describe_file(job.source, asf_path=asf, strict=strict)
+            facts = describe.describe_mcz(source, asf_path=asf, models=models)
+        elif source.kind == MCM:
+            facts = describe.describe_model(load_model(source.data), source.size)
+        elif source.kind == DIFFMA_JSON:
+            facts = describe.describe_json(source.data)
+        else:
+            facts = describe.describe_file(source, asf_path=asf)
+        return facts | {"warning": warning_of(source)}
 
     def show(outcomes: list[Outcome]) -> None:
         from rich.console import Console
@@ -45,7 +40,7 @@ def show_info(
         for outcome in outcomes:
             table = Table(title=str(outcome.source), show_header=False, title_justify="left")
             for key, value in outcome.result.items():
-                if value is not None:
+                if value is not None and key != "warning":
                     table.add_row(key.replace("_", " "), _text(value))
             console.print(table)
 

@@ -10,9 +10,10 @@ from mocapress import codecs
 from mocapress.cli.batch import STREAM, Job, Outcome, find, run, usage
 from mocapress.codecs import DEFAULT_CODEC, Model
 from mocapress.errors import FormatError, MocapressError, ParameterError
-from mocapress.formats.files import read
+from mocapress.formats import readable, suffixes
 from mocapress.models import Place, load_model, model_bytes, save_model, train
 from mocapress.motion import Clip
+from mocapress.source import Source, read
 
 
 def open_model(path: Path) -> Model:
@@ -44,7 +45,7 @@ def train_model(
         codecs.learner(made)
     except ParameterError as error:
         usage(f"--codec: {error}")
-    files = [job.source for job in find(inputs, (".amc", ".bvh"))]
+    files = [job.source for job in find(inputs, suffixes(readable()))]
     if STREAM in (*files, output):
         usage("train reads and writes files, not stdin and stdout")
     learned = {"clips": 0, "frames": 0}
@@ -52,7 +53,7 @@ def train_model(
     def clips() -> Iterator[Clip]:
         for path in files:
             try:
-                clip = read(path)
+                clip = read(Source(path))
             except FormatError as error:
                 typer.echo(f"mocapress: warning: left out: {error}", err=True)
                 continue

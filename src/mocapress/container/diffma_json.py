@@ -11,7 +11,9 @@ from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.diffma.codec import by_channel
 from mocapress.codecs.diffma.document import Document, Level, read_document
 from mocapress.codecs.fallback import naming_faults
-from mocapress.container import Kind, pack, unpack
+from mocapress.container.columns import Columns, bones_of, read_columns, write_columns
+from mocapress.container.limits import most_printed
+from mocapress.container.packing import pack, unpack
 from mocapress.errors import (
     CorruptError,
     FormatError,
@@ -19,15 +21,15 @@ from mocapress.errors import (
     UnsupportedError,
     VerificationError,
 )
-from mocapress.formats import asf
-from mocapress.formats.files import columns_of, find_asf, sniff, split
 from mocapress.formats.layout import Layout
-from mocapress.formats.problems import report
-from mocapress.motion import Clip, Column, Skeleton
+from mocapress.formats.layout_record import read_layout, write_layout
+from mocapress.formats.number_formats import SHORTEST
+from mocapress.formats.patterns import References
+from mocapress.motion import Clip, Column
 from mocapress.motion.clip import decimal_seconds
 from mocapress.records import Reader, Writer
+from mocapress.source import JSON_SUFFIXES, Named, Source
 
-SUFFIXES = (".diffma.json", ".diffma.json.xz")
 _XZ = b"\xfd7zXZ\x00"
 _FOR_TEXT = [
     {
@@ -44,20 +46,14 @@ _MOST_TEXT = 1 << 28
 _MOST_MEMORY = 1 << 27
 
 
-def is_json(data: bytes | memoryview, name: str = "") -> bool:
-    """Tell DiffMA JSON, packed or not, from the contents or the name."""
-    head = bytes(data[:64])
-    return name.lower().endswith(SUFFIXES) or head[:6] == _XZ or head.lstrip()[:1] == b"{"
-
-
 def stem(name: str) -> str:
     """Give a file's name without the ending."""
-    ending = max((e for e in SUFFIXES if name.lower().endswith(e)), key=len, default="")
+    ending = max((e for e in JSON_SUFFIXES if name.lower().endswith(e)), key=len, default="")
     return name[: len(name) - len(ending)]
 
 
 def to_json(
-    source: str | Path | bytes | Clip,
+    source: Named | Clip,
     codec: str | DiffMA = "diffma",
     *,
     asf_path: str | Path | None = None,
@@ -67,7 +63,7 @@ def to_json(
     Parameters
     ----------
     source
-        A clip, a path, or the contents of an AMC or BVH.
+        A clip, or a motion file: a path, its contents, or a stream.
     codec
         ``diffma`` with parameters, ``"diffma:bound=4"``.
     asf_path
@@ -76,7 +72,7 @@ def to_json(
     Returns
     -------
     bytes
-        JSON text; ``decompress`` makes the AMC or BVH again, unless the source was a clip.
+        JSON text; ``decompress`` makes the motion file again, unless the source was a clip.
 
     Raises
     ------
@@ -89,13 +85,10 @@ def to_json(
     made = diffma_codec(codec) if isinstance(codec, str) else codec
     if isinstance(source, Clip):
         return clip_to_json(source, made)
-    data, name = (
-        (source, "") if isinstance(source, bytes) else (Path(source).read_bytes(), str(source))
-    )
-    if asf_path is None and name and sniff(data, name) == "amc":
-        asf_path = find_asf(Path(name))
-    skeleton = asf.parse_asf(Path(asf_path).read_bytes(), str(asf_path)) if asf_path else None
-    return file_to_json(data, made, name=name, skeleton=skeleton)
+    opened = Source(source)
+    text = file_to_json(opened, made, asf_path=asf_path)
+    opened.report()
+    return text
 
 
 def diffma_codec(text: str) -> DiffMA:
@@ -106,9 +99,7 @@ def diffma_codec(text: str) -> DiffMA:
     return made
 
 
-def file_to_json(
-    data: bytes, codec: DiffMA, *, name: str = "", skeleton: Skeleton | None = None
-) -> bytes:
+def file_to_json(source: Source, codec: DiffMA, *, asf_path: str | Path | None = None) -> bytes:
     """Code a motion file; what comes back of it, by ``json_to_file``, has its layout.
 
     Raises
@@ -117,15 +108,10 @@ def file_to_json(
         When it is no motion file, or a broken one.
 
     """
-    kind = sniff(data, name)
-    if kind not in ("amc", "bvh"):
-        raise FormatError("not a motion file", file=name or None, expected="AMC or BVH")
-    clip, layout, problems = split(data, kind, skeleton=skeleton, file=name or None)
-    report(problems, name or None)
-    writer = Writer()
-    writer.integer(Kind[kind.upper()])
-    writer.integer(clip.frames)
-    return clip_to_json(clip, codec, layout=bytes(writer.data) + pack(layout.to_bytes()))
+    clip, layout, problems = source.split(asf_path)
+    source.accept(problems)
+    source.warn_of_guess()
+    return clip_to_json(clip, codec, layout=_packed(layout, clip))
 
 
 def clip_to_json(clip: Clip, codec: DiffMA, *, layout: bytes = b"") -> bytes:
@@ -207,15 +193,8 @@ def json_to_clip(data: bytes | memoryview, *, bound: float | None = None) -> Cli
     Columns, skeleton and frame time are as far known as the document says.
     """
     document = open_json(data)
-    layout = _layout(document)
-    if layout is not None:
-        clip = columns_of(layout, document.skeleton if layout.format == "amc" else None)
-        if clip.channels != len(document.names):
-            raise _misfit("channels", len(document.names), clip.channels)
-        return clip.with_values(document.decode(bound))
-    return Clip.of(
-        document.decode(bound), _columns(document), document.frame_time, document.skeleton
-    )
+    columns = _unpacked(document)[0].columns if document.layout else _columns(document)
+    return Clip.of(document.decode(bound), columns, document.frame_time, document.skeleton)
 
 
 def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:
@@ -224,7 +203,7 @@ def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:
     Returns
     -------
     tuple
-        ``amc`` or ``bvh``, and the file's bytes.
+        The id of its format, and the file's bytes.
 
     Raises
     ------
@@ -233,28 +212,50 @@ def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:
 
     """
     document = open_json(data)
-    layout = _layout(document)
-    if layout is None:
+    if not document.layout:
         raise UnsupportedError(
             "$.layout is not there to make the file again",
             expected="a file that mocapress compress made, or convert --to bvh",
         )
+    found, kind, record = _unpacked(document)
     values = document.decode()
-    if values.shape[1] != len(layout.formats):
-        raise _misfit("channels", values.shape[1], len(layout.formats))
-    return layout.format, layout.join(values, (1 << 24) + 64 * (values.size + len(data)))
+    most = most_printed(1 << 24, values.size + len(data))
+    formats = tuple(column.decimal or SHORTEST for column in found.columns)
+    layout = read_layout(record, kind, document.frames, formats, _references(found), most)
+    return kind, layout.join(values, most)
 
 
-def _layout(document: Document) -> Layout | None:
-    if not document.layout:
-        return None
+def _packed(layout: Layout, clip: Clip) -> bytes:
+    """Give the layout of a document: format, frames, and, packed, the columns and the layout."""
+    writer, record = Writer(), Writer()
+    write_columns(record, clip.columns, None)
+    columns = Columns(clip.columns, bones_of(clip.columns))
+    writer.text(layout.format)
+    writer.integer(clip.frames)
+    packed = pack(bytes(record.data) + write_layout(layout, _references(columns)))
+    return bytes(writer.data) + packed
+
+
+def _unpacked(document: Document) -> tuple[Columns, str, bytes]:
+    """Give the columns, the format's id, and the layout that is not read yet."""
     reader = Reader(document.layout, "$.layout")
-    kind, frames = Kind(reader.integer(max(Kind))), reader.integer()
-    if kind is Kind.BYTES or frames != document.frames:
-        raise _misfit("frames of AMC or BVH", document.frames, frames)
+    kind, frames = reader.text(), reader.integer()
+    if frames != document.frames:
+        raise _misfit("frames", document.frames, frames)
     most = (1 << 22) + 64 * len(document.layout)
-    packed = document.layout[reader.position :]
-    return Layout.from_bytes(unpack(packed, "$.layout", most), kind.name.lower(), frames)
+    record = Reader(unpack(reader.raw(reader.left), "$.layout", most), "$.layout")
+    columns = read_columns(record, None)
+    joints = len(document.skeleton.joints) if document.skeleton else len(document.names)
+    if len(columns.columns) != len(document.names):
+        raise _misfit("channels", len(document.names), len(columns.columns))
+    if any(column.joint >= joints for column in columns.columns):
+        raise _misfit("joints", joints, max(column.joint for column in columns.columns) + 1)
+    return columns, kind, record.raw(record.left)
+
+
+def _references(columns: Columns) -> References:
+    """Give what the layout refers to: bones alone, as the rest stands in the document as text."""
+    return References.of(None, [bone.name for bone in columns.bones for _ in range(bone.count)], None)
 
 
 def _misfit(what: str, expected: int, found: int) -> FormatError:

@@ -11,6 +11,8 @@ from mocapress.formats.rows import merged_statistics
 from mocapress.motion.number_format import NumberFormat, NumberKind
 from mocapress.records import Reader, Writer
 
+SHORTEST = NumberFormat(NumberKind.SHORTEST)
+"""How numbers are printed that were never text."""
 _MOST_DIGITS = 40
 _MOST_EXPONENT_DIGITS = 8
 

@@ -38,8 +38,7 @@ def to_bvh_clip(clip: Clip, fps: float | None = None) -> Clip:
     """
     skeleton = _skeleton(clip)
     if clip.frame_time is None or fps is not None:
-        seconds = (1 / Decimal(str(fps or DEFAULT_FPS))).quantize(Decimal("1e-8"))
-        clip = clip.with_frame_time(seconds)
+        clip = clip.with_frame_time(frame_time_of(fps or DEFAULT_FPS))
     if skeleton.rotation == "moving":
         return clip
     placed = translations(clip)
@@ -61,6 +60,11 @@ def to_bvh_clip(clip: Clip, fps: float | None = None) -> Clip:
         for i in range(len(joints))
     ]
     return _finish(clip, made, values, NumberFormat(NumberKind.FIXED, 6))
+
+
+def frame_time_of(fps: float) -> Decimal:
+    """Give the frame time of a frame rate, as files state it."""
+    return (1 / Decimal(str(fps))).quantize(Decimal("1e-8"))
 
 
 def to_amc_clip(clip: Clip) -> Clip:

@@ -14,30 +14,25 @@ from mocapress.codecs.diffma.skeleton_json import skeleton_keys
 from mocapress.container import diffma_json
 from mocapress.errors import MocapressError, UnsupportedError
 from mocapress.motion import Clip
+from mocapress.source import DIFFMA_JSON, MCZ, Source
 
 MAX_ERROR = 0.01
 """Of a value, in degrees or the file's unit of length: less than can be seen."""
 
 
 def file(
-    path: Path,
-    *,
-    asf_path: Path | None = None,
-    max_error: float | None = None,
-    strict: bool = True,
+    path: Path, *, asf_path: Path | None = None, max_error: float | None = None
 ) -> dict[str, Any]:
     """Give what is in a motion file, of any kind that mocapress reads.
 
     Parameters
     ----------
     path
-        AMC, BVH, ``.mcz`` or DiffMA JSON; the latter is embedded as it is.
+        A motion file, ``.mcz`` or DiffMA JSON; the latter is embedded as it is.
     asf_path
         The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
     max_error
         Largest error of a value, in its unit; None embeds exact values.
-    strict
-        Whether a file that has lost frames is refused, as by ``mocapress.read``.
 
     Raises
     ------
@@ -48,10 +43,10 @@ def file(
 
     """
     try:
-        if diffma_json.is_json(b"", path.name):
-            return _document(path)
-        compressed = path.suffix.lower() == ".mcz"
-        clip = (api.load if compressed else api.read)(path, asf_path=asf_path, strict=strict)
+        source = Source(path)
+        if source.kind == DIFFMA_JSON:
+            return _document(source)
+        clip = (api.load if source.kind == MCZ else api.read)(path, asf_path=asf_path)
         if not clip.frames:
             raise UnsupportedError("no frames to be played")
         if max_error is None:
@@ -98,8 +93,8 @@ def _named(clip: Clip, name: str) -> dict[str, Any]:
     return made | {"angleUnit": unit} if unit in ("deg", "rad") else made
 
 
-def _document(path: Path) -> dict[str, Any]:
+def _document(source: Source) -> dict[str, Any]:
     """Give a DiffMA JSON without its layout, which only ``decompress`` needs."""
-    document = diffma_json.open_json(path.read_bytes())
+    document = diffma_json.open_json(source.data)
     text = replace(document, layout=b"").to_json()
-    return {"name": path.name, "diffma": json.loads(text)}
+    return {"name": Path(source.name).name, "diffma": json.loads(text)}
