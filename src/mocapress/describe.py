@@ -14,9 +14,11 @@ from mocapress.motion.convert import suggest_unit
 from mocapress.source import Source
 
 
-def describe_file(source: Source, *, asf_path: Path | None = None) -> dict[str, Any]:
+def describe_file(
+    source: Source, *, asf_path: Path | None = None, strict: bool = True
+) -> dict[str, Any]:
     """Describe a motion file."""
-    clip = api.read_source(source, asf_path)
+    clip = api.read_source(source, asf_path, strict=strict)
     return {"bytes": source.size, "format": source.kind} | describe_clip(clip)
 
 
@@ -78,7 +80,11 @@ def describe_json(blob: bytes) -> dict[str, Any]:
 
 
 def describe_mcz(
-    source: Source, *, asf_path: Path | None = None, models: Sequence[Place] = ()
+    source: Source,
+    *,
+    asf_path: Path | None = None,
+    models: Sequence[Place] = (),
+    strict: bool = True,
 ) -> dict[str, Any]:
     """Describe a ``.mcz`` file: what it holds, and where its bytes go.
 
@@ -114,7 +120,7 @@ def describe_mcz(
             for index, stream in enumerate(opened.streams)
         }
     frames = mcz.frames()
-    columns = api.load_source(source, slice(0), asf_path=asf_path)
+    columns = api.load_source(source, slice(0), asf_path=asf_path, strict=strict)
     facts |= describe_clip(columns, frames)
     if frames and main.columns:
         facts["bits_per_sample"] = 8 * mcz.size / (frames * len(main.columns))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from mocapress import codecs
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
+from mocapress.codecs.fallback import naming_faults
 from mocapress.container import Mcm, pack_model, parse_model, peek_model
 from mocapress.container.mcm import LONGEST_FILE, LONGEST_HEADER
 from mocapress.errors import CorruptError, MissingModelError, MocapressError, ParameterError
@@ -39,21 +40,18 @@ def train(sources: Iterable[Named | Clip], codec: str | Codec = DEFAULT_CODEC) -
         When the codec does not learn, or there are no clips.
     FormatError
         When a file cannot be read.
+    VerificationError
+        When the codec fails.
 
     """
-    learner = codecs.learner(codecs.codec(codec) if isinstance(codec, str) else codec)
-    clips = (source if isinstance(source, Clip) else _read(source) for source in sources)
+    made = codecs.codec(codec) if isinstance(codec, str) else codec
+    learner = codecs.learner(made)
+    clips = (source if isinstance(source, Clip) else read(Source(source)) for source in sources)
     first = next(clips, None)
     if first is None:
         raise ParameterError("nothing to learn from", expected="at least one clip")
-    return learner.train(chain([first], clips))
-
-
-def _read(named: Named) -> Clip:
-    source = Source(named)
-    clip = read(source)
-    source.report()
-    return clip
+    with naming_faults(made):
+        return learner.train(chain([first], clips))
 
 
 def model_bytes(model: Model) -> bytes:

@@ -7,6 +7,7 @@ import errno
 import os
 import re
 import stat
+import sys
 import warnings
 import weakref
 from collections.abc import Callable, Iterable, Sequence
@@ -244,7 +245,7 @@ class Source:
         if isinstance(error, OSError):
             error = FormatError(error.strerror or str(error), file=beside.file)
         error.what += "; the skeleton is left away"
-        self.warnings.append(MotionWarning(name, error))
+        self.warn(name, error)
 
     def accept(self, problems: Sequence[Problem], *, strict: bool = True) -> None:
         """Refuse a file that has lost motion, where reading is strict; warn of all else.
@@ -259,7 +260,8 @@ class Source:
         lost = next((problem for problem in problems if problem.loses_motion), None)
         if strict and lost is not None:
             raise lost.error(file)
-        self.warnings += [MotionWarning(p.name, p.error(file)) for p in problems]
+        for problem in problems:
+            self.warn(problem.name, problem.error(file))
 
     def told(self, clip: Clip) -> Clip:
         """Say in a clip's metadata which skeleton was used, and how it was found."""
@@ -276,12 +278,16 @@ class Source:
                 file=self.used.file,
                 expected=f"one named as {Path(self.name).name}, or one given",
             )
-            self.warnings.append(MotionWarning("guessed-skeleton", fact))
+            self.warn("guessed-skeleton", fact)
 
-    def report(self, depth: int = 1) -> None:
-        """Warn of what was found; ``depth``: how many calls lie between this one and the user's."""
-        for warning in self.warnings:
-            warnings.warn(warning, stacklevel=depth + 2)
+    def warn(self, name: str, fact: MocapressError) -> None:
+        """Warn of something, as from the line outside mocapress that led here, and keep it."""
+        warning = MotionWarning(name, fact)
+        self.warnings.append(warning)
+        frame, level = sys._getframe(), 1
+        while frame.f_back and frame.f_globals["__name__"].partition(".")[0] == "mocapress":
+            frame, level = frame.f_back, level + 1
+        warnings.warn(warning, stacklevel=level)
 
 
 def find_beside(

@@ -89,12 +89,9 @@ def compress(
         model = load_model(model)
     if isinstance(source, Clip):
         return compress_clip(source, codec, model=model, notes=notes).blob
-    opened = Source(source)
-    made = compress_source(
-        opened, codec, asf_path=asf_path, embed_asf=embed_asf, model=model, notes=notes
-    )
-    opened.report()
-    return made.blob
+    return compress_source(
+        Source(source), codec, asf_path=asf_path, embed_asf=embed_asf, model=model, notes=notes
+    ).blob
 
 
 def compress_source(
@@ -190,10 +187,10 @@ def _compress_motion(
     clip, layout, problems = parts
     data, file = source.data, source.name or None
     warning = "; ".join(str(problem.error(file)) for problem in problems) or None
-    too_much = layout.verbatim_bytes() + len(layout.tail) > len(data) / 2
-    if too_much or not is_storable_time(clip.frame_time):
-        general = "numbers in no regular form; stored by a general-purpose compressor"
-        return None, warning or general, None
+    irregular = layout.verbatim_bytes() + len(layout.tail) > len(data) / 2
+    if not clip.frames or irregular or not is_storable_time(clip.frame_time):
+        reason = "numbers in no regular form" if clip.frames else "no frames"
+        return None, warning or f"{reason}; stored by a general-purpose compressor", None
     # The skeleton of another file is stored only where that was asked for.
     skeleton = stored_skeleton(clip) if embed or source.used is None else None
     if skeleton is None:

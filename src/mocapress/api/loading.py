@@ -13,7 +13,6 @@ from mocapress.container import CHANNELS, StreamHead, diffma_json
 from mocapress.errors import (
     CorruptError,
     FormatError,
-    MotionWarning,
     ParameterError,
     UnsupportedError,
 )
@@ -69,12 +68,15 @@ def load(
         When the model that the file needs is nowhere.
 
     """
-    opened = Source(source)
-    clip = load_source(
-        opened, frames, stream=stream, asf_path=asf_path, models=models, strict=strict, errors=errors
+    return load_source(
+        Source(source),
+        frames,
+        stream=stream,
+        asf_path=asf_path,
+        models=models,
+        strict=strict,
+        errors=errors,
     )
-    opened.report()
-    return clip
 
 
 def load_source(
@@ -87,7 +89,7 @@ def load_source(
     strict: bool = True,
     errors: str = _RAISE,
 ) -> Clip:
-    """Load a clip; see ``load``. Warnings are left with the source."""
+    """Load a clip; see ``load``."""
     if errors not in (_RAISE, _SKIP):
         raise ParameterError("errors", expected="raise or skip", found=repr(errors))
     if source.kind == DIFFMA_JSON:
@@ -101,6 +103,7 @@ def load_source(
     if original is not None:
         source.accept(original.problems, strict=strict)
     clip = _clip(opened, frames, stream, asf_path)
+    source.warn_of_guess()
     _warn(opened)
     return clip
 
@@ -201,16 +204,12 @@ def _unknown(opened: Opened, head: StreamHead) -> None:
         f"stream {head.name!r} is of a kind that is not known yet, {head.kind!r}",
         file=opened.source.name or None,
     )
-    opened.source.warnings.append(MotionWarning("unknown-stream", fact))
+    opened.source.warn("unknown-stream", fact)
 
 
 def _warn(opened: Opened) -> None:
-    file = opened.source.name or None
-    warnings = opened.source.warnings
+    source = opened.source
     if not opened.mcz.closed and not opened.damage:
-        fact = CorruptError("the recording was not closed; all whole chunks are read", file=file)
-        warnings.append(MotionWarning("unfinished-recording", fact))
-    for loss in opened.damage:
-        what = f"{loss.where} is lost ({loss.error.what})"
-        fact = CorruptError(what, file=file, offset=loss.error.offset)
-        warnings.append(MotionWarning("lost", fact))
+        what = "the recording was not closed; all whole chunks are read"
+        source.warn("unfinished-recording", CorruptError(what, file=source.name or None))
+    opened.warn_of_losses()

@@ -61,6 +61,13 @@ class Opened:
         """What could not be read so far."""
         return self.mcz.damage
 
+    def warn_of_losses(self) -> None:
+        """Warn of each part of the file that could not be read."""
+        for where, error in self.damage:
+            what = f"{where} is lost ({error.what})"
+            fact = CorruptError(what, file=self.source.name or None, offset=error.offset)
+            self.source.warn("lost", fact)
+
     @property
     def streams(self) -> tuple[StreamHead, ...]:
         """What the file says about its streams."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mocapress.api.opening import Opened, Rows
 from mocapress.container import Companion, Damage, Original, StreamHead, diffma_json, limits
-from mocapress.errors import CorruptError, MocapressError, MotionWarning, UnsupportedError
+from mocapress.errors import CorruptError, UnsupportedError
 from mocapress.formats.layout import Layout
 from mocapress.formats.layout_record import read_layout
 from mocapress.formats.number_formats import SHORTEST
@@ -60,13 +60,11 @@ def decompress(
 
     """
     opened = source if isinstance(source, Source) else Source(source)
-    restored = restore(opened, models, salvage=salvage)
-    opened.report()
-    return restored.data
+    return restore(opened, models, salvage=salvage).data
 
 
 def restore(source: Source, models: Sequence[Place] = (), *, salvage: bool = False) -> Restored:
-    """Restore a file; see ``decompress``. Warnings are left with the source."""
+    """Restore a file; see ``decompress``."""
     if source.kind == DIFFMA_JSON:
         kind, data = diffma_json.json_to_file(source.data)
         return Restored(data, kind)
@@ -81,7 +79,7 @@ def restore(source: Source, models: Sequence[Place] = (), *, salvage: bool = Fal
             expected="mocapress convert, or load and write",
         )
     data = contents(opened, original)
-    source.warnings += [MotionWarning("lost", _fact(loss)) for loss in opened.damage]
+    opened.warn_of_losses()
     return Restored(
         data, original.format, original.name, tuple(opened.mcz.companions), tuple(opened.damage)
     )
@@ -134,7 +132,3 @@ def references(opened: Opened, stream: StreamHead) -> References:
     skeleton = opened.mcz.head.skeleton if opened.mcz.head else None
     bones = [bone.name for bone in stream.bones for _ in range(bone.count)]
     return References.of(skeleton, bones, stream.frame_time)
-
-
-def _fact(loss: Damage) -> MocapressError:
-    return CorruptError(f"{loss.where} is lost ({loss.error.what})", offset=loss.error.offset)

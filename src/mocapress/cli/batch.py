@@ -10,7 +10,8 @@ from typing import Any, NoReturn
 
 import typer
 
-from mocapress.errors import MocapressError, ParameterError
+from mocapress.cli.warned import collecting, kept
+from mocapress.errors import MocapressError, MotionWarning, ParameterError
 from mocapress.source import Source
 
 STREAM = Path("-")
@@ -32,6 +33,7 @@ class Outcome:
     source: Path
     result: dict[str, Any] = field(default_factory=dict)
     error: MocapressError | OSError | MemoryError | None = None
+    warnings: list[MotionWarning] = field(default_factory=list)
 
 
 def find(inputs: Sequence[Path], suffixes: tuple[str, ...]) -> list[Job]:
@@ -64,11 +66,6 @@ def opened(job: Job) -> Source:
     return Source(sys.stdin.buffer) if job.source == STREAM else Source(job.source)
 
 
-def warning_of(source: Source, more: str | None = None) -> str | None:
-    """Put the warnings about a source into one."""
-    return "; ".join([*map(str, source.warnings), *([more] if more else [])]) or None
-
-
 def target(job: Job, output: Path | None, rename: Callable[[Path], Path], *, many: bool) -> Path:
     """Say where a job's output goes; ``rename`` gives the name where none was asked for."""
     if output == STREAM or (output is None and job.source == STREAM):
@@ -92,16 +89,22 @@ def run(
     failure_code: int = 1,
 ) -> None:
     """Work on all jobs; report results and errors; end with the exit code."""
-    outcomes = _work_all(jobs, work, threads)
+    with collecting():
+        outcomes = _work_all(jobs, work, threads)
     failed = [outcome for outcome in outcomes if outcome.error]
     if json:
         rows = [
-            {"file": str(outcome.source)} | (_as_dict(outcome) if outcome.error else outcome.result)
+            {"file": str(outcome.source)}
+            | (_as_dict(outcome) if outcome.error else outcome.result)
+            | {"warnings": [warning.as_dict() for warning in outcome.warnings]}
             for outcome in outcomes
         ]
         typer.echo(jsonlib.dumps(rows, indent=1))
     else:
         done = [outcome for outcome in outcomes if not outcome.error]
+        for outcome in outcomes:
+            for warning in outcome.warnings:
+                typer.echo(f"mocapress: warning: {warning}", err=True)
         for outcome in done:
             if outcome.result.get("warning"):
                 typer.echo(f"mocapress: warning: {_with_file(outcome)}", err=True)
@@ -124,6 +127,7 @@ def _work_all(
             outcomes[index].result = work(jobs[index])
         except (MocapressError, OSError, MemoryError) as error:
             outcomes[index].error = error
+        outcomes[index].warnings = kept()
 
     if len(jobs) == 1:
         one(0)

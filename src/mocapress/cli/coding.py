@@ -4,11 +4,12 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from mocapress import api, codecs
-from mocapress.cli.batch import STREAM, Job, Outcome, find, opened, run, target, usage, warning_of
+from mocapress.cli.batch import STREAM, Job, Outcome, find, opened, run, target, usage
 from mocapress.cli.models import open_model, open_models, places_for
 from mocapress.codecs import Codec
 from mocapress.codecs.diffma import DiffMA
@@ -55,12 +56,13 @@ def compress_files(
 
     def work(job: Job) -> dict[str, Any]:
         place = target(job, output, partial(_compressed_name, to=to), many=len(files) > 1)
-        source, warning = opened(job), None
+        source = opened(job)
+        warning, loss = None, None
         if to == "mcz":
             compressed = api.compress_source(
                 source, made, asf_path=asf, embed_asf=embed_asf, model=learned
             )
-            blob, warning = compressed.blob, compressed.warning
+            blob, warning, loss = compressed.blob, compressed.warning, compressed.loss
         else:
             assert isinstance(made, DiffMA)
             blob = diffma_json.named(to, diffma_json.file_to_json(source, made, asf_path=asf))
@@ -70,7 +72,9 @@ def compress_files(
             "raw_bytes": source.size,
             "compressed_bytes": len(blob),
             "ratio": round(source.size / len(blob), 3),
-            "warning": warning_of(source, warning),
+            "largest_error": loss.most if loss else None,
+            "psnr": loss.psnr if loss and isfinite(loss.psnr) else None,
+            "warning": warning,
         }
 
     run(files, work, threads=jobs, json=json, show=_show_sizes)
@@ -162,7 +166,9 @@ def _show_sizes(outcomes: list[Outcome]) -> None:
         return
     for outcome in outcomes:
         raw, small = outcome.result["raw_bytes"], outcome.result["compressed_bytes"]
-        print(f"{outcome.result['output']}: {raw} <-> {small} bytes, {raw / small:.2f} : 1")
+        lost = outcome.result.get("largest_error")
+        errors = "" if lost is None else f", errors up to {lost:.3g}"
+        print(f"{outcome.result['output']}: {raw} <-> {small} bytes, {raw / small:.2f} : 1{errors}")
     if len(outcomes) > 1:
         raw = sum(outcome.result["raw_bytes"] for outcome in outcomes)
         small = sum(outcome.result["compressed_bytes"] for outcome in outcomes)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from mocapress import api
-from mocapress.cli.batch import STREAM, Job, Outcome, find, opened, run, target, usage, warning_of
+from mocapress.cli.batch import STREAM, Job, Outcome, find, opened, run, target, usage
 from mocapress.cli.models import open_models
 from mocapress.container import diffma_json
 from mocapress.errors import UnsupportedError
@@ -25,6 +25,7 @@ def convert_files(
     asf: Path | None,
     models: Sequence[Path],
     fps: float | None,
+    strict: bool,
     jobs: int,
     force: bool,
     json: bool,
@@ -43,7 +44,7 @@ def convert_files(
     def work(job: Job) -> dict[str, Any]:
         place = target(job, output, rename, many=len(files) > 1)
         source = opened(job)
-        clip = _read(source, asf, given)
+        clip = _read(source, asf, given, strict=strict)
         warning = None
         if fps is not None:
             clip = clip.with_frame_time(frame_time_of(fps))
@@ -54,7 +55,7 @@ def convert_files(
             "frames": clip.frames,
             "skeleton": clip.metadata.get("skeleton"),
             "skeleton_found": clip.metadata.get("skeleton_found"),
-            "warning": warning_of(source, warning),
+            "warning": warning,
         }
         if place == STREAM:
             sys.stdout.buffer.write(next(iter(api.printed(clip, target_format).values())))
@@ -76,15 +77,14 @@ def _target(to: str | None, output: Path | None) -> Format:
     return found
 
 
-def _read(source: Source, asf: Path | None, models: Sequence[Place]) -> Clip:
+def _read(source: Source, asf: Path | None, models: Sequence[Place], *, strict: bool) -> Clip:
     if source.kind == MCZ:
-        clip = api.load_source(source, asf_path=asf, models=models)
+        clip = api.load_source(source, asf_path=asf, models=models, strict=strict)
     else:
-        clip = api.read_source(source, asf)
+        clip = api.read_source(source, asf, strict=strict)
     if clip.skeleton is None:
-        more = "".join(f" ({warning})" for warning in source.warnings)
         raise UnsupportedError(
-            "no skeleton", file=source.name or None, expected=f"one beside it, or --asf{more}"
+            "no skeleton", file=source.name or None, expected="one beside it, or --asf"
         )
     return clip
 

@@ -85,10 +85,7 @@ def to_json(
     made = diffma_codec(codec) if isinstance(codec, str) else codec
     if isinstance(source, Clip):
         return clip_to_json(source, made)
-    opened = Source(source)
-    text = file_to_json(opened, made, asf_path=asf_path)
-    opened.report()
-    return text
+    return file_to_json(Source(source), made, asf_path=asf_path)
 
 
 def diffma_codec(text: str) -> DiffMA:

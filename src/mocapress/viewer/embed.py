@@ -21,7 +21,11 @@ MAX_ERROR = 0.01
 
 
 def file(
-    path: Path, *, asf_path: Path | None = None, max_error: float | None = None
+    path: Path,
+    *,
+    asf_path: Path | None = None,
+    max_error: float | None = None,
+    strict: bool = True,
 ) -> dict[str, Any]:
     """Give what is in a motion file, of any kind that mocapress reads.
 
@@ -33,6 +37,8 @@ def file(
         The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
     max_error
         Largest error of a value, in its unit; None embeds exact values.
+    strict
+        Whether a file that has lost frames is refused, as by ``mocapress.read``.
 
     Raises
     ------
@@ -46,7 +52,8 @@ def file(
         source = Source(path)
         if source.kind == DIFFMA_JSON:
             return _document(source)
-        clip = (api.load if source.kind == MCZ else api.read)(path, asf_path=asf_path)
+        read = api.load if source.kind == MCZ else api.read
+        clip = read(path, asf_path=asf_path, strict=strict)
         if not clip.frames:
             raise UnsupportedError("no frames to be played")
         if max_error is None:
