@@ -1,8 +1,8 @@
 """Make the preset dictionary that heads and layouts are packed with (docs/format.md).
 
-``python benchmarks/make_dictionary.py [--check]`` writes ``src/mocapress/container/dictionary1.bin``
-from the samples of a checkout and from the names of joints that many programs use. With ``--check``
-it only says how the file differs. The dictionary is a part of the format: once a version of
+``python benchmarks/make_dictionary.py [--check]`` writes
+``src/mocapress/container/dictionary1.bin`` from the samples of a checkout and from the names of
+joints that many programs use. With ``--check`` it only says whether the file would differ. The dictionary is a part of the format: once a version of
 mocapress is released, it stays, and a better one gets another name and another method of packing.
 """
 
@@ -11,8 +11,8 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from mocapress.api.opening import Opened
 from mocapress.api import compress_source
+from mocapress.api.opening import Opened
 from mocapress.container.head import Head, write_head
 from mocapress.container.packing import unpack
 from mocapress.motion import Skeleton
@@ -22,15 +22,16 @@ ROOT = Path(__file__).parents[1]
 TARGET = ROOT / "src/mocapress/container/dictionary1.bin"
 SAMPLES = ROOT / "samples"
 # Of Mixamo, MotionBuilder and the converters of CMU's clips, in the order of their skeletons.
-NAMES = """
-Hips Hip Pelvis pelvis root Root LHipJoint LeftUpLeg LeftHip LeftLeg LeftKnee LeftFoot LeftAnkle
-LeftToeBase LeftToe RHipJoint RightUpLeg RightHip RightLeg RightKnee RightFoot RightAnkle
-RightToeBase RightToe LowerBack Spine Spine1 Spine2 Spine3 Chest Chest2 Neck Neck1 Head
-LeftShoulder LeftCollar LeftArm LeftForeArm LeftElbow LeftHand LeftWrist LeftFingerBase
-LeftHandThumb1 LeftHandIndex1 LeftHandMiddle1 LeftHandRing1 LeftHandPinky1 LThumb RightShoulder
-RightCollar RightArm RightForeArm RightElbow RightHand RightWrist RightFingerBase RightHandThumb1
-RightHandIndex1 RightHandMiddle1 RightHandRing1 RightHandPinky1 RThumb
-""".split()
+NAMES = (
+    "Hips Hip Pelvis pelvis root Root LHipJoint LeftUpLeg LeftHip LeftLeg LeftKnee LeftFoot "
+    "LeftAnkle LeftToeBase LeftToe RHipJoint RightUpLeg RightHip RightLeg RightKnee RightFoot "
+    "RightAnkle RightToeBase RightToe LowerBack Spine Spine1 Spine2 Spine3 Chest Chest2 Neck "
+    "Neck1 Head LeftShoulder LeftCollar LeftArm LeftForeArm LeftElbow LeftHand LeftWrist "
+    "LeftFingerBase LeftHandThumb1 LeftHandIndex1 LeftHandMiddle1 LeftHandRing1 LeftHandPinky1 "
+    "LThumb RightShoulder RightCollar RightArm RightForeArm RightElbow RightHand RightWrist "
+    "RightFingerBase RightHandThumb1 RightHandIndex1 RightHandMiddle1 RightHandRing1 "
+    "RightHandPinky1 RThumb "
+).split()
 NOTES = ("author", "license", "source", "name")
 CODECS = ("diffma", "app", "exact")
 FILES = ("mocapbank.bvh", "freebvh.bvh", "cmu_01_01.amc")

@@ -10,12 +10,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from mocapress.codecs import Codec, Model, spec
-from mocapress.container import Kind, pack, pack_file, parse, unpack
+from mocapress import api
+from mocapress.api.compressing import motion_file
+from mocapress.codecs import Codec, Model
 from mocapress.errors import FormatError
-from mocapress.formats.layout import Layout
 from mocapress.models import model_bytes
-from mocapress.restore import chunks_of
 from mocapress.source import Source
 from mocapress_bench.contenders import Tool, contenders
 from mocapress_bench.learning import Learned
@@ -97,28 +96,17 @@ def _codec_row(
     data: bytes, path: Path, codec: Codec, repeat: int, model: Model | None = None
 ) -> Row:
     source = Source(path)
-    (clip, layout, _), split_s = _best(source.split, repeat)
+    given = [model] if model else []
+    parts, split_s = _best(source.split, repeat)
+    clip = parts.clip
     encoded, encode_s = _best(lambda: codec.encode(clip, model=model), repeat)
     blob, pack_s = _best(
-        lambda: pack_file(
-            kind=Kind[layout.format.upper()],
-            size=len(data),
-            digest=hashlib.sha256(data).digest(),
-            payloads=[(chunk.frames, chunk.restart, chunk.payload) for chunk in encoded.chunks],
-            columns=clip.channels,
-            codec=spec(codec),
-            model=model.digest if model else b"",
-            codec_header=encoded.header,
-            layout=pack(layout.to_bytes()),
-        ),
+        lambda: motion_file(parts, data, path.name, codec, encoded, model, with_skeleton=False),
         repeat,
     )
-    (mcz, read), open_s = _best(lambda: _open(blob), repeat)
-    chunks = chunks_of(mcz)
-    values, decode_s = _best(
-        lambda: codec.decode(mcz.codec_header, chunks, clip.columns, model=model), repeat
-    )
-    restored, join_s = _best(lambda: read.join(values), repeat)
+    restored, decompress_s = _best(lambda: api.decompress(blob, models=given), repeat)
+    opened = api.Opened(Source(blob), given)
+    _, decode_s = _best(opened.rows, repeat)
     payload = sum(len(chunk.payload) for chunk in encoded.chunks)
     frames = max(clip.frames, 1)
     return {
@@ -131,15 +119,9 @@ def _codec_row(
         "encode_us_per_frame": 1e6 * encode_s / frames,
         "decode_us_per_frame": 1e6 * decode_s / frames,
         "compress_s": split_s + encode_s + pack_s,
-        "decompress_s": open_s + decode_s + join_s,
+        "decompress_s": decompress_s,
         **_proof(data, restored),
     }
-
-
-def _open(blob: bytes) -> tuple[Any, Layout]:
-    mcz = parse(blob)
-    layout = Layout.from_bytes(unpack(mcz.layout, "layout"), mcz.kind.name.lower(), mcz.frames)
-    return mcz, layout
 
 
 def _rival_row(data: bytes, path: Path, rival: Rival, repeat: int) -> Row:

@@ -55,7 +55,9 @@ def stream(name: str, frames: int | None, columns: tuple[Column, ...] = COLUMNS)
     return StreamHead(name, frames, Decimal("0.0083333"), columns, SPEC, b"", b"header")
 
 
-def chunk(index: int, first: int, frames: int, payload: bytes, *, restart: bool = True) -> CodedChunk:
+def chunk(
+    index: int, first: int, frames: int, payload: bytes, *, restart: bool = True
+) -> CodedChunk:
     return CodedChunk(Entry(index, first, frames, restart, False, 0, 0), 7, b"", payload)
 
 
@@ -80,6 +82,12 @@ def made(
     if end:
         writer.end()
     return b"".join(parts)
+
+
+def read_all(data: bytes) -> list[bytes]:
+    """Open a file and read all chunks."""
+    mcz = parse(data)
+    return [mcz.read_chunk(entry).payload for entry in mcz.entries]
 
 
 def parse(data: bytes, *, salvage: bool = False) -> Mcz:
@@ -121,7 +129,9 @@ vectors = st.tuples(numbers, numbers, numbers)
 
 @st.composite
 def joints(draw: st.DrawFn, index: int) -> Joint:
-    channels = tuple(draw(st.permutations(["tx", "ty", "rz", "rx", "l"]))[: draw(st.integers(0, 5))])
+    channels = tuple(
+        draw(st.permutations(["tx", "ty", "rz", "rx", "l"]))[: draw(st.integers(0, 5))]
+    )
     return Joint(
         draw(names),
         draw(st.integers(-1, index - 1)),
@@ -204,7 +214,10 @@ def test_the_columns_of_a_skeleton_are_stored_once() -> None:
     assert read_head(with_it).streams[0].columns == columns
     other = (replace(columns[0], name="Hips.t"), *columns[1:])
     assert len(with_it) + 10 < len(write_head(Head((stream("motion", 3, other),), skeleton)))
-    assert read_head(write_head(Head((stream("motion", 3, other),), skeleton))).streams[0].columns == other
+    assert (
+        read_head(write_head(Head((stream("motion", 3, other),), skeleton))).streams[0].columns
+        == other
+    )
 
 
 @given(
@@ -263,9 +276,7 @@ def test_every_flipped_bit_is_found() -> None:
         flipped = bytearray(BLOB)
         flipped[bit // 8] ^= 1 << bit % 8
         with pytest.raises((CorruptError, UnsupportedError)):
-            mcz = parse(bytes(flipped))
-            for entry in mcz.entries:
-                mcz.read_chunk(entry)
+            read_all(bytes(flipped))
 
 
 def test_of_a_flipped_bit_only_what_it_stands_in_is_lost() -> None:
@@ -351,9 +362,7 @@ def test_each_section_stands_once_and_in_order() -> None:
 @pytest.mark.parametrize("end", [True, False])
 def test_chunks_make_up_their_stream(chunks: list[CodedChunk], end: bool) -> None:
     with pytest.raises(CorruptError):
-        mcz = parse(made(TWO, chunks, end=end))
-        for entry in mcz.entries:
-            mcz.read_chunk(entry)
+        read_all(made(TWO, chunks, end=end))
 
 
 def test_streams_share_a_file() -> None:
@@ -451,5 +460,7 @@ def test_opening_costs_as_much_as_there_is() -> None:
 
 
 def test_what_the_end_costs() -> None:
-    entries = [Entry(0, 512 * i, 512, True, False, 5 + 9000 * i, 5 + 9000 * (i + 1)) for i in range(9)]
+    entries = [
+        Entry(0, 512 * i, 512, True, False, 5 + 9000 * i, 5 + 9000 * (i + 1)) for i in range(9)
+    ]
     assert len(write_end(entries)) <= 2 * len(entries) + 16

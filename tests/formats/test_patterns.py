@@ -84,7 +84,18 @@ def test_whatever_else_stands_there_comes_back(change: tuple[bytes, bytes]) -> N
 
 
 pieces = st.sampled_from(
-    [b"ROOT ", b"JOINT ", b"Hips", b"{", b"}", b"\n", b"\r\n", b"\t", b"OFFSET 1 2.50 3", b"Frames: "]
+    [
+        b"ROOT ",
+        b"JOINT ",
+        b"Hips",
+        b"{",
+        b"}",
+        b"\n",
+        b"\r\n",
+        b"\t",
+        b"OFFSET 1 2.50 3",
+        b"Frames: ",
+    ]
 )
 
 

@@ -1,4 +1,4 @@
-"""The Python interface, ``import mocapress as mp``: files and clips to compressed files and back."""
+"""The Python interface: ``import mocapress as mp``."""
 
 from mocapress.api.checking import Checked, verify, verify_source
 from mocapress.api.compressing import Compressed, compress, compress_clip, compress_source

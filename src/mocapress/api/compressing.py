@@ -1,7 +1,7 @@
 """From motion files and clips to compressed files."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePath
 
@@ -9,7 +9,7 @@ from mocapress import codecs
 from mocapress.api.encoding import coded, placed, stored_skeleton
 from mocapress.api.opening import Opened
 from mocapress.api.restoring import printed
-from mocapress.codecs import DEFAULT_CODEC, Codec, Model
+from mocapress.codecs import DEFAULT_CODEC, Codec, Encoded, Model
 from mocapress.codecs.fallback import first_that_works
 from mocapress.codecs.loss import Loss, checked_loss
 from mocapress.container import Companion, Head, MczWriter, Original, is_storable_time, pack
@@ -20,6 +20,7 @@ from mocapress.formats.layout_record import write_layout
 from mocapress.formats.patterns import References
 from mocapress.models import load_model
 from mocapress.motion import Clip
+from mocapress.motion.clip import MOTION
 from mocapress.source import Named, Source
 
 # Below this size, or above this share of the original, the general-purpose way is tried as well.
@@ -142,8 +143,8 @@ def compress_clip(
     for index, (name, stream) in enumerate(clip.streams.items()):
         if not is_storable_time(stream.frame_time):
             raise UnsupportedError("frame time", found=str(stream.frame_time))
-        alone = Clip({name: stream}, clip.skeleton, clip.name)
-        head, of_stream = coded(alone, name, index, made, model if index == 0 else None)
+        alone, own = Clip({name: stream}, clip.skeleton), model if index == 0 else None
+        head, of_stream = coded(alone, name, index, made, made.encode(alone, model=own), own)
         heads.append(head)
         chunks += of_stream
     said = {**({"name": clip.name} if clip.name else {}), **clip.metadata, **(notes or {})}
@@ -191,42 +192,83 @@ def _compress_motion(
     if not clip.frames or irregular or not is_storable_time(clip.frame_time):
         reason = "numbers in no regular form" if clip.frames else "no frames"
         return None, warning or f"{reason}; stored by a general-purpose compressor", None
+    embedded = _companions(source) if embed else []
     # The skeleton of another file is stored only where that was asked for.
-    skeleton = stored_skeleton(clip) if embed or source.used is None else None
-    if skeleton is None:
-        clip = replace(clip.with_columns(placed(clip.columns)), skeleton=None)
-    bones = [bone.name for bone in bones_of(clip.columns) for _ in range(bone.count)]
+    with_skeleton = embed or source.used is None
+
+    def work(way: Codec) -> tuple[bytes, Loss | None]:
+        own = model if way is codec else None
+        encoded = way.encode(clip, model=own)
+        blob = motion_file(
+            parts,
+            data,
+            PurePath(source.name).name,
+            way,
+            encoded,
+            own,
+            with_skeleton=with_skeleton,
+            companions=embedded,
+            notes=notes,
+        )
+        return blob, _check(blob, data, way, clip, own)
+
+    found, failure = first_that_works(codec, work)
+    blob, loss = found or (None, None)
+    return blob, "; ".join(filter(None, (failure, warning))) or None, loss
+
+
+def motion_file(
+    parts: Split,
+    data: bytes,
+    name: str,
+    codec: Codec,
+    encoded: Encoded,
+    model: Model | None = None,
+    *,
+    with_skeleton: bool = True,
+    companions: Sequence[Companion] = (),
+    notes: Mapping[str, str] | None = None,
+) -> bytes:
+    """Put a file together from a motion file's parts, and what a codec made of its numbers.
+
+    Parameters
+    ----------
+    parts, data, name
+        The motion file taken apart, its contents, and its name without folders.
+    codec, encoded, model
+        The codec, what it made of the clip, and with what model.
+    with_skeleton
+        Whether the clip's skeleton is stored.
+    companions, notes
+        What else is stored.
+
+    """
+    clip, layout, problems = parts
+    skeleton = stored_skeleton(clip) if with_skeleton else None
+    columns = clip.columns if skeleton else placed(clip.columns)
+    bones = [bone.name for bone in bones_of(columns) for _ in range(bone.columns)]
     references = References.of(skeleton, bones, clip.frame_time)
     original = Original(
         layout.format,
-        PurePath(source.name).name,
+        name,
         len(data),
         hashlib.sha256(data).digest(),
         problems,
         pack(write_layout(layout, references)),
     )
-    companions = _companions(source) if embed else []
-
-    def work(way: Codec) -> tuple[bytes, Loss | None]:
-        own = model if way is codec else None
-        head, chunks = coded(parts.clip, "motion", 0, way, own)
-        made: list[bytes] = []
-        writer = MczWriter(made.append)
-        writer.head(Head((replace(head, columns=clip.columns),), skeleton))
-        writer.original(original)
-        for companion in companions:
-            writer.companion(companion)
-        if notes:
-            writer.notes(notes)
-        for chunk in chunks:
-            writer.chunk(chunk)
-        writer.end()
-        blob = b"".join(made)
-        return blob, _check(blob, data, way, parts.clip, own)
-
-    found, failure = first_that_works(codec, work)
-    blob, loss = found or (None, None)
-    return blob, "; ".join(filter(None, (failure, warning))) or None, loss
+    head, chunks = coded(clip, MOTION, 0, codec, encoded, model)
+    made: list[bytes] = []
+    writer = MczWriter(made.append)
+    writer.head(Head((replace(head, columns=columns),), skeleton))
+    writer.original(original)
+    for companion in companions:
+        writer.companion(companion)
+    if notes:
+        writer.notes(notes)
+    for chunk in chunks:
+        writer.chunk(chunk)
+    writer.end()
+    return b"".join(made)
 
 
 def _companions(source: Source) -> list[Companion]:

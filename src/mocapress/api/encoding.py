@@ -21,10 +21,9 @@ def stream_head(name: str, stream: Stream, codec: Codec, *, frames: int | None) 
 
 
 def coded(
-    clip: Clip, name: str, index: int, codec: Codec, model: Model | None
+    clip: Clip, name: str, index: int, codec: Codec, encoded: Encoded, model: Model | None
 ) -> tuple[StreamHead, list[CodedChunk]]:
-    """Code the first stream of a clip, which a file calls ``name``, as its stream ``index``."""
-    encoded = codec.encode(clip, model=model)
+    """Give what a file holds of the first stream of a clip: its stream ``index``, ``name``."""
     head = replace(
         stream_head(name, clip.main, codec, frames=clip.frames),
         model=model.digest if model else b"",
@@ -73,7 +72,7 @@ def coded_chunks(
 
 
 def placed(columns: Sequence[Column]) -> tuple[Column, ...]:
-    """Number the joints of columns in the order of appearance, as where there is no skeleton."""
+    """Give columns whose joints are numbered in the order of appearance."""
     places: dict[int, int] = {}
     return tuple(
         replace(column, joint=places.setdefault(column.joint, len(places))) for column in columns

@@ -172,7 +172,7 @@ def _format(name: str) -> Format | None:
 
 def _fitted(opened: Opened, clip: Clip, skeleton: Skeleton | None) -> Clip:
     """Give the columns of the first stream as a skeleton has them."""
-    bones = [(bone.name, bone.count) for bone in opened.streams[0].bones]
+    bones = [(bone.name, bone.columns) for bone in opened.streams[0].bones]
     if skeleton is None or not bones:
         return clip
     units = {column.unit for column in clip.columns}

@@ -165,9 +165,7 @@ class Opened:
         head = self.streams[stream]
         header = read[0].header if group[0].own_header else head.header
         stop = min(last, group[-1].last) - group[0].first
-        values = decoded(
-            self.codec(stream), header, chunks, head, self._model(stream), stop
-        )
+        values = decoded(self.codec(stream), header, chunks, head, self._model(stream), stop)
         parts = []
         for chunk in read:
             begin = chunk.entry.first - group[0].first
@@ -208,12 +206,10 @@ def decoded(
 
 def digest(rows: NDArray[np.float64]) -> int:
     """Give what a chunk's values are recognised by: CRC-32 of the little-endian doubles."""
-    return zlib.crc32(np.ascontiguousarray(rows, dtype="<f8"))
+    return zlib.crc32(memoryview(np.ascontiguousarray(rows, dtype="<f8")).cast("B"))
 
 
-def _groups(
-    entries: Sequence[Entry], first: int, last: int, *, alone: bool
-) -> list[list[Entry]]:
+def _groups(entries: Sequence[Entry], first: int, last: int, *, alone: bool) -> list[list[Entry]]:
     """Give the chunks that hold frames [first, last) and those that these need.
 
     Chunks of one codec header come together; ``alone``: only those that need each other.

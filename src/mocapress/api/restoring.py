@@ -2,10 +2,7 @@
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-
-import numpy as np
-from numpy.typing import NDArray
+from dataclasses import dataclass, field
 
 from mocapress.api.opening import Opened, Rows
 from mocapress.container import Companion, Damage, Original, StreamHead, diffma_json, limits
@@ -35,7 +32,8 @@ class Restored:
 
 
 def decompress(
-    source: Named | Source, *, models: Sequence[Place] = (), salvage: bool = False) -> bytes:
+    source: Named | Source, *, models: Sequence[Place] = (), salvage: bool = False
+) -> bytes:
     """Give the original file's bytes (for a lossy codec: the decoded values in its layout).
 
     Parameters
@@ -102,7 +100,7 @@ def contents(opened: Opened, original: Original) -> bytes:
 
 def printed(opened: Opened, original: Original, rows: Rows) -> bytes:
     """Print decoded rows in the original's layout; lost rows are left out."""
-    stream, size = opened.streams[0], original.size
+    size = original.size
     most = size
     if not opened.codec().lossless:
         most = limits.most_printed(size, rows.values.size)
@@ -130,5 +128,5 @@ def layout_of(opened: Opened, original: Original, rows: int) -> Layout:
 def references(opened: Opened, stream: StreamHead) -> References:
     """Give what a layout may refer to."""
     skeleton = opened.mcz.head.skeleton if opened.mcz.head else None
-    bones = [bone.name for bone in stream.bones for _ in range(bone.count)]
+    bones = [bone.name for bone in stream.bones for _ in range(bone.columns)]
     return References.of(skeleton, bones, stream.frame_time)

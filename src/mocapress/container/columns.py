@@ -18,7 +18,7 @@ class Bone(NamedTuple):
     """Successive columns of one joint."""
 
     name: str
-    count: int
+    columns: int
     joint: int
 
 
@@ -43,7 +43,7 @@ def write_columns(writer: Writer, columns: Sequence[Column], skeleton: Skeleton 
         expected = 0
         for bone in bones:
             writer.text(bone.name)
-            writer.integer(bone.count)
+            writer.integer(bone.columns)
             writer.signed(bone.joint - expected)
             expected = bone.joint + 1
         _write_kinds(writer, columns)
@@ -77,7 +77,9 @@ def read_columns(reader: Reader, skeleton: Skeleton | None) -> Columns:
         joints = reader.runs(count, limits.JOINTS).tolist()
         kinds, units = _read_kinds(reader, count)
         rows = zip(names, joints, kinds, units, strict=True)
-        found = Columns(tuple(Column(n, joint - 1, kind, unit) for n, joint, kind, unit in rows), ())
+        found = Columns(
+            tuple(Column(n, joint - 1, kind, unit) for n, joint, kind, unit in rows), ()
+        )
     joints = len(skeleton.joints) if skeleton else limits.JOINTS
     if any(not -1 <= column.joint < joints for column in found.columns):
         raise reader.fail("a column of no joint")
@@ -94,7 +96,9 @@ def bones_of(columns: Sequence[Column]) -> tuple[Bone, ...]:
     """Give the bones of columns; nothing where their names do not come from bones."""
     bones = []
     seen: dict[str, int] = {}
-    groups = groupby(columns, lambda column: (column.joint, column.name.removesuffix(f".{column.kind}")))
+    groups = groupby(
+        columns, lambda column: (column.joint, column.name.removesuffix(f".{column.kind}"))
+    )
     for (joint, label), group in groups:
         base, hash_, number = label.rpartition("#")
         again = hash_ and base in seen and number == str(seen[base] + 1)
@@ -124,7 +128,7 @@ def _columns_of(
     for bone in bones:
         nth = seen[bone.name] = seen.get(bone.name, 0) + 1
         label = bone.name if nth == 1 else f"{bone.name}#{nth}"
-        for _ in range(bone.count):
+        for _ in range(bone.columns):
             kind = kinds[len(columns)]
             columns.append(Column(f"{label}.{kind}", bone.joint, kind, units[len(columns)]))
     return tuple(columns)

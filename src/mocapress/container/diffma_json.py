@@ -252,7 +252,9 @@ def _unpacked(document: Document) -> tuple[Columns, str, bytes]:
 
 def _references(columns: Columns) -> References:
     """Give what the layout refers to: bones alone, as the rest stands in the document as text."""
-    return References.of(None, [bone.name for bone in columns.bones for _ in range(bone.count)], None)
+    return References.of(
+        None, [bone.name for bone in columns.bones for _ in range(bone.columns)], None
+    )
 
 
 def _misfit(what: str, expected: int, found: int) -> FormatError:

@@ -222,18 +222,16 @@ def _walk(mcz: Mcz, collect: _Collector) -> None:
     mcz.closed = False
     data = _whole(mcz.ranges, _BEGIN, mcz.size)
     for section in _sections(data, collect):
-        if section.tag == Tag.CHUNK and section.sound:
+        if section.tag == Tag.CHUNK:
             try:
-                mcz.entries.append(read_chunk(section.content, section.begin, section.end).entry)
+                content = checked(section, "chunk")
+                mcz.entries.append(read_chunk(content, section.begin, section.end).entry)
             except CorruptError as error:
                 collect.damaged(f"chunk at byte {section.begin}", error)
-        elif section.tag == Tag.CHUNK:
-            error = CorruptError("chunk: wrong checksum", offset=section.begin)
-            collect.damaged(f"chunk at byte {section.begin}", error)
         elif section.tag == Tag.END:
             if section.end < mcz.size:
-                error = CorruptError("bytes behind the end of the file", offset=section.end)
-                collect.damaged("what follows", error)
+                behind = CorruptError("bytes behind the end of the file", offset=section.end)
+                collect.damaged("what follows", behind)
             break
         else:
             collect.take(section, chunks_before=bool(mcz.entries))

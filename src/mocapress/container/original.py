@@ -162,5 +162,3 @@ def read_companion(content: bytes, length: int) -> Companion:
     kind, name = reader.text(), reader.text()
     packed = reader.raw(reader.left)
     return Companion(kind, name, unpack(packed, "companion", limits.most_original(length)))
-
-

@@ -6,15 +6,12 @@ by an entry point of the group ``mocapress.formats`` that names a ``Format``.
 
 import warnings
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
 
-from mocapress.errors import FormatError, UnsupportedError
+from mocapress.errors import UnsupportedError
 from mocapress.formats.contract import Format, Split
-from mocapress.formats.layout import Layout
-from mocapress.motion import Clip, Skeleton
 
 __all__ = [
     "Format",

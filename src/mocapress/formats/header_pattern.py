@@ -73,9 +73,7 @@ def header_pattern(
     return raw(header), style
 
 
-def _prints(
-    pattern: bytes, header: bytes, rows: int, references: References, style: Style
-) -> bool:
+def _prints(pattern: bytes, header: bytes, rows: int, references: References, style: Style) -> bool:
     try:
         return Header(references, style, rows, len(header), printed).print(pattern) == header
     except CorruptError:
@@ -114,7 +112,9 @@ def _pattern(
             joint += 1
         elif code == CHANNELS:
             reference = bytes([CHANNELS])
-            same = [(words or "").encode() for words in references.channels[joint - 1 : joint]] == [text]
+            same = [(words or "").encode() for words in references.channels[joint - 1 : joint]] == [
+                text
+            ]
         else:
             reference = bytes([code])
             same = text == (b"%d" % rows if code == COUNT else references.time.encode())

@@ -110,7 +110,9 @@ class Layout:
             self,
             assigned=self.assigned[keep],
             counters=self.counters[keep] if len(self.counters) else self.counters,
-            cell_rows=(np.cumsum(keep) - 1)[self.cell_rows[cells].astype(np.int64)].astype(np.uint64),
+            cell_rows=(np.cumsum(keep) - 1)[self.cell_rows[cells].astype(np.int64)].astype(
+                np.uint64
+            ),
             cell_slots=self.cell_slots[cells],
             cells=tuple(compress(self.cells, cells)),
             raw_rows=tuple(compress(self.raw_rows, raw)),

@@ -14,7 +14,9 @@ RAW, BREAK, NAME, CHANNELS, COUNT, TIME, PASS, VALUE = range(8)
 """The bytes that stand for something else; what each means depends on where it stands."""
 NUMBER = 0x10
 MOST_FORMATS = 16
-_PIECE = re.compile(rb"\x00(.)|([\x00-\x08\x0b\x0c\x0e-\x1f])|([^\x00-\x08\x0b\x0c\x0e-\x1f]+)", re.S)
+_PIECE = re.compile(
+    rb"\x00(.)|([\x00-\x08\x0b\x0c\x0e-\x1f])|([^\x00-\x08\x0b\x0c\x0e-\x1f]+)", re.S
+)
 _SPECIAL = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f]")
 _WORDS = {
     "tx": "Xposition",
