@@ -61,7 +61,17 @@ def test_every_box_has_its_row() -> None:
 
 
 def test_importing_mocapress_loads_no_numpy_and_no_extras() -> None:
-    heavy = {"numpy", "scipy", "typer", "rich", "matplotlib", "zstandard", "brotli", "pcodec"}
+    heavy = {
+        "numpy",
+        "scipy",
+        "msgspec",
+        "typer",
+        "rich",
+        "matplotlib",
+        "zstandard",
+        "brotli",
+        "pcodec",
+    }
     code = f"import sys, mocapress; print(sorted({heavy!r} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -1,75 +1,304 @@
-"""Files as users want them: whole or not at all, and never overwritten unasked."""
+"""Files as users want them: whole or not at all, and never overwritten unasked.
 
+A file is written under a temporary name beside its own, synced, and then given its name. Whenever
+the process dies, the old file is there or the new one, whole. What a killed process has left is
+taken away by the next one that writes the same file: the temporary name follows from the file's,
+and a lock on it says whether its writer is still alive.
+"""
+
+import errno
+import fcntl
+import hashlib
 import os
-import tempfile
+import secrets
+import stat
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from mocapress.errors import MocapressError
+
+_NEW = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
+_LEFT = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
 
 
 class ExistsError(MocapressError):
     """The output file exists and was not to be overwritten."""
 
 
-def write_whole(path: str | Path, data: bytes, *, force: bool = False) -> None:
-    """Write a file by way of a temporary one beside it, synced and renamed.
+def write_whole(
+    path: str | Path,
+    data: bytes,
+    *,
+    force: bool = False,
+    like: os.stat_result | None = None,
+    times: bool = True,
+) -> None:
+    """Write a file; see ``write_all``."""
+    write_all({Path(path): data}, force=force, like=like, times=times)
 
-    Whenever the process dies, the old file is there or the new one, whole.
+
+def write_all(
+    files: Mapping[Path, bytes],
+    *,
+    force: bool = False,
+    like: os.stat_result | None = None,
+    times: bool = True,
+) -> None:
+    """Write files that belong together: all of them, or none.
+
+    A symbolic link is followed to the file that it names. Into a FIFO or a character device the
+    bytes are written as they are; nothing is replaced there.
+
+    Parameters
+    ----------
+    files
+        Paths and their contents. The folders must exist.
+    force
+        Whether files that exist are replaced.
+    like
+        The file that these were made from: they get its permissions, and its owner and group as
+        far as the user may give them. Without it, a file that is replaced hands on its
+        permissions, and a new one has the usual ones.
+    times
+        Whether they get the modification time of ``like``, too.
 
     Raises
     ------
     ExistsError
-        When the file exists and ``force`` is not given.
+        When a file exists and ``force`` is not given.
     OSError
-        When it cannot be written.
+        When one cannot be written. It names the file.
 
     """
-    path = Path(path)
-    if path.exists() and not force:
-        raise ExistsError("file exists; --force overwrites it", file=str(path))
-    descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    # The same order in every process, so that no two wait for each other.
+    pairs = sorted((Path(path), data) for path, data in files.items())
+    check_targets([path for path, _ in pairs], force=force)
+    streams = [(path, data) for path, data in pairs if is_stream(path)]
+    whole = [(path, data) for path, data in pairs if not is_stream(path)]
+    targets = [Path(os.path.realpath(path)) for path, _ in whole]
+    with ExitStack() as stack:
+        parts = []
+        for (path, data), target in zip(whole, targets, strict=True):
+            with _naming(path):
+                part = stack.enter_context(_part(target, data, like, times=times))
+            parts.append((path, target, part))
+        _commit(parts, force=force)
+    for folder in {target.parent for target in targets}:
+        _sync(folder)
+    for path, data in streams:
+        with _naming(path):
+            descriptor = os.open(path, os.O_WRONLY | os.O_CLOEXEC)
+            try:
+                _write(descriptor, data)
+            finally:
+                os.close(descriptor)
+
+
+def is_stream(path: Path) -> bool:
+    """Say whether a path names a FIFO or a character device: bytes go there, no file is made."""
     try:
-        with os.fdopen(descriptor, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        mode = path.stat().st_mode & 0o777 if path.exists() else 0o666 & ~_umask()
-        Path(name).chmod(mode)
-        if force:
-            Path(name).replace(path)
-        else:
-            # A link fails where a file has appeared meanwhile; a rename would replace it.
-            _link(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
-    _sync_folder(path.parent)
+        mode = path.stat().st_mode
+    except FileNotFoundError:
+        return False
+    return stat.S_ISFIFO(mode) or stat.S_ISCHR(mode)
 
 
-def _link(name: str, path: Path) -> None:
+def check_targets(paths: Sequence[Path], *, force: bool) -> None:
+    """Raise what ``write_all`` would raise at once; take away what killed processes have left.
+
+    Raises
+    ------
+    ExistsError
+        When a file exists and ``force`` is not given.
+    OSError
+        When there is something else than a file or a stream.
+
+    """
+    _clean([Path(os.path.realpath(path)) for path in paths])
+    for path in paths:
+        try:
+            mode = path.stat().st_mode
+        except FileNotFoundError:
+            continue
+        if stat.S_ISDIR(mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+        if not (stat.S_ISREG(mode) or is_stream(path)):
+            raise OSError(errno.EINVAL, "Not a file, FIFO or character device", str(path))
+        if stat.S_ISREG(mode) and not force:
+            raise _exists(path)
+
+
+@contextmanager
+def _part(target: Path, data: bytes, like: os.stat_result | None, *, times: bool) -> Iterator[Path]:
+    """Write the data under a temporary name, which is gone at the end."""
+    model = like
+    if model is None:
+        with suppress(FileNotFoundError):
+            model = target.stat()
+    # Nobody else sees the contents before the permissions are those of the model.
+    descriptor, part = _create(target, 0o666 if model is None else 0o600)
     try:
-        os.link(name, path)
-    except FileExistsError:
-        raise ExistsError("file exists; --force overwrites it", file=str(path)) from None
-    except OSError:  # a file system without links
-        Path(name).replace(path)
-    Path(name).unlink(missing_ok=True)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
-
-
-def _sync_folder(folder: Path) -> None:
-    try:
-        descriptor = os.open(folder, os.O_RDONLY)
-    except OSError:
-        return
-    try:
+        _write(descriptor, data)
+        if model is not None:
+            _permit(descriptor, model)
+        if like is not None and times:
+            with suppress(OSError):
+                os.utime(descriptor, ns=(like.st_atime_ns, like.st_mtime_ns))
         os.fsync(descriptor)
-    except OSError:
-        pass
+        yield part
     finally:
+        if _is_at(descriptor, part):
+            part.unlink()
         os.close(descriptor)
+
+
+def _commit(parts: Sequence[tuple[Path, Path, Path]], *, force: bool) -> None:
+    """Give the written parts their names; where one cannot have it, none has."""
+    with ExitStack() as done, ExitStack() as undo:
+        for path, target, part in parts:
+            with _naming(path):
+                try:
+                    # A link fails where a file has appeared meanwhile; a rename replaces it.
+                    target.hardlink_to(part)
+                    undo.callback(target.unlink)
+                    continue
+                except FileExistsError:
+                    if not force:
+                        raise _exists(path) from None
+                except OSError:  # a file system without links
+                    if target.exists() and not force:
+                        raise _exists(path) from None
+                old = _old(target)
+                if len(parts) > 1:
+                    done.callback(old.unlink, missing_ok=True)
+                    with suppress(OSError):
+                        old.hardlink_to(target)
+                part.replace(target)
+                if old.exists():
+                    undo.callback(old.replace, target)
+        undo.pop_all()
+
+
+def _clean(targets: Sequence[Path]) -> None:
+    """Take away what killed processes have left: whole parts, and halves of what belongs together.
+
+    Waits for a process that is writing one of these files just now.
+    """
+    with suppress(OSError), ExitStack() as locks:
+        parts = {target for target in sorted(targets) if _stale(_temporary(target), locks)}
+        named = {
+            target
+            for target in targets
+            if (_same(target, _temporary(target)) if target in parts else _old(target).exists())
+        }
+        halfway = named and parts - named
+        for target in targets:
+            if halfway and target in named:
+                if target in parts:
+                    target.unlink()
+                else:
+                    _old(target).replace(target)
+            if target in parts:
+                _temporary(target).unlink()
+            _old(target).unlink(missing_ok=True)
+
+
+def _stale(part: Path, locks: ExitStack) -> bool:
+    """Say whether a killed process has left this part; then hold its lock."""
+    while True:
+        try:
+            descriptor = os.open(part, _LEFT)
+        except FileNotFoundError:
+            return False
+        locks.callback(os.close, descriptor)
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        if _is_at(descriptor, part):
+            return True
+
+
+def _same(path: Path, other: Path) -> bool:
+    return path.exists() and path.samefile(other)
+
+
+def _create(target: Path, mode: int) -> tuple[int, Path]:
+    """Create a part and lock it."""
+    part = _temporary(target)
+    for _ in range(100):
+        try:
+            descriptor = os.open(part, _NEW, mode)
+        except FileExistsError:
+            _clean([target])
+            continue
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            os.close(descriptor)
+            break
+        if _is_at(descriptor, part):
+            return descriptor, part
+        os.close(descriptor)
+    # There are no locks here, or what is left is another user's: a name that nobody else takes.
+    part = part.with_suffix(f".{secrets.token_hex(4)}.part")
+    return os.open(part, _NEW, mode), part
+
+
+def _is_at(descriptor: int, path: Path) -> bool:
+    with suppress(FileNotFoundError):
+        return os.path.samestat(os.fstat(descriptor), path.lstat())
+    return False
+
+
+def _temporary(target: Path) -> Path:
+    """Give the temporary name; short, as a long one would not fit where the target's just does."""
+    digest = hashlib.sha256(os.fsencode(target.name)).hexdigest()
+    return target.with_name(f".mocapress-{digest[:16]}.part")
+
+
+def _old(target: Path) -> Path:
+    return _temporary(target).with_suffix(".old")
+
+
+def _write(descriptor: int, data: bytes) -> None:
+    rest = memoryview(data)
+    while rest:
+        rest = rest[os.write(descriptor, rest) :]
+
+
+def _permit(descriptor: int, model: os.stat_result) -> None:
+    """Hand on owner, group and permissions, as far as this user may; never more to anybody."""
+    mode = model.st_mode & 0o777
+    own = os.fstat(descriptor)
+    if own.st_uid != model.st_uid:
+        with suppress(OSError):
+            os.fchown(descriptor, model.st_uid, -1)
+    if own.st_gid != model.st_gid:
+        try:
+            os.fchown(descriptor, -1, model.st_gid)
+        except OSError:
+            # Another group: it may do what everybody may.
+            mode = mode & 0o707 | (mode & 0o007) << 3
+    with suppress(OSError):  # a file system without permissions
+        os.fchmod(descriptor, mode)
+
+
+def _exists(path: Path) -> ExistsError:
+    return ExistsError("file exists; --force overwrites it", file=str(path))
+
+
+@contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Name the file that was asked for in errors of the system, not the temporary one."""
+    try:
+        yield
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+def _sync(folder: Path) -> None:
+    with suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)

@@ -70,7 +70,9 @@ def test_streams(walk: Path) -> None:
     packed = process("compress", "-", data=AMC)
     assert packed.returncode == 0
     assert process("decompress", "-", data=packed.stdout).stdout == AMC
-    assert process("compress", walk, "-o", "-").stdout == packed.stdout
+    named = process("compress", walk, "-o", "-").stdout
+    assert 0 <= len(named) - len(packed.stdout) - len(walk.name) <= 1
+    assert process("decompress", "-", data=named).stdout == AMC
 
 
 def test_json_is_for_machines(walk: Path, tmp_path: Path) -> None:
@@ -107,8 +109,8 @@ def test_json_is_for_machines(walk: Path, tmp_path: Path) -> None:
         (["compress", "walk.amc", "--target-psnr", "40"], 2, "expected diffma"),
         (["compress", "walk.amc", "--codec", "diffma:levels=8"], 2, "levels are for JSON"),
         (["compress", "broken.bvh", "-o", "x.diffma.json"], 1, "broken.bvh, line 3"),
-        (["decompress", "x.diffma.json"], 1, "x.diffma.json: $.channels; expected an array"),
-        (["verify", "x.diffma.json"], 3, "$.channels; expected an array; found nothing"),
+        (["decompress", "x.diffma.json"], 1, "x.diffma.json: $.channels; expected a value"),
+        (["verify", "x.diffma.json"], 3, "$.channels; expected a value; found nothing"),
         (["convert", "walk.amc"], 2, "say what to convert to"),
         (["compress", "empty"], 2, "no .amc or .asf or .bvh files"),
         (["compress"], 2, "Missing argument"),

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import diffma_schema
 import jsonschema
 import numpy as np
 import pytest
@@ -23,7 +24,7 @@ from mocapress.source import Source
 
 ROOT = Path(__file__).parents[2]
 GOLDEN = ROOT / "tests/golden"
-SCHEMA = json.loads((ROOT / "src/mocapress/codecs/diffma/schema.json").read_text())
+SCHEMA = json.loads(diffma_schema.FILE.read_text())
 
 
 def listing_2() -> dict[str, Any]:
@@ -133,6 +134,11 @@ def set_at(*keys: Any, to: Any) -> Callable[[Any], None]:
     return change
 
 
+def skeleton(joint: dict[str, Any] | None = None, **keys: Any) -> dict[str, Any]:
+    one = {"name": "a", "parent": -1, "offset": [0, 0, 0]} | (joint or {})
+    return {"rotation": "moving", "joints": [one], "columns": [[0, "tx"]] * 3} | keys
+
+
 BROKEN: list[tuple[str, Callable[[Any], Any]]] = [
     ("$.channels", lambda d: d.pop("channels")),
     ("$.channels[1]", set_at("channels", 1, to=7)),
@@ -143,7 +149,6 @@ BROKEN: list[tuple[str, Callable[[Any], Any]]] = [
     ("$.records.b[2]", set_at("records", "b", 2, to="1ZY")),
     ("$.records.b[2]", set_at("records", "b", 2, to='1Z"a')),
     ("$.records.b[2]", set_at("records", "b", 2, to="1Zéa")),
-    ("$.records.b[2]", set_at("records", "b", 2, to="1Z\ud800a")),
     ("$.records.b[2]", set_at("records", "b", 2, to="1Z~a")),
     ("$.records.t[0]", set_at("records", "t", 0, to=[])),
     ("$.records.t[2]", lambda d: d["records"]["t"][2].append(1)),
@@ -167,11 +172,21 @@ BROKEN: list[tuple[str, Callable[[Any], Any]]] = [
     ("$.layout", set_at("layout", to="~")),
     ("$.levels[0].bound", set_at("levels", to=[{"bound": "x", "records": {}}])),
     ("$.levels[0].records", set_at("levels", to=[{"bound": 8}])),
-    ("$.skeleton.joints", set_at("skeleton", to={})),
+    ("$.skeleton.joints", set_at("skeleton", to={"rotation": "fixed"})),
     ("$.skeleton.rotation", set_at("skeleton", to={"joints": []})),
+    ("$.skeleton.rotation", set_at("skeleton", to=skeleton(rotation="turning"))),
+    (
+        "$.skeleton.joints[0].channels[1]",
+        set_at("skeleton", to=skeleton({"channels": ["tx", "x"]})),
+    ),
+    ("$.skeleton.columns", set_at("skeleton", to=skeleton(columns=[[0, "tx"]]))),
+    (
+        "$.skeleton.columns[2][0]",
+        set_at("skeleton", to=skeleton(columns=[[0, "tx"]] * 2 + [[1, "ty"]])),
+    ),
     (
         "$.skeleton.joints[0].parent",
-        set_at("skeleton", to={"joints": [{"name": "a", "parent": 0}]}),
+        set_at("skeleton", to=skeleton({"parent": 0})),
     ),
 ]
 
@@ -193,12 +208,13 @@ def test_broken_documents_name_the_place(path: str, change: Callable[[Any], Any]
         ("$", b"{"),
         ("$", b"{\xff}"),
         ("$", b'{"a":NaN}'),
+        ("$", text_of(listing_2()).replace(b"1ZYa", b"1Z\\ud800a")),
         ("$", b'{"a":' + b"[" * 200_000 + b"]" * 200_000 + b"}"),
         ("$.records.t[2][1]", text_of(listing_2()).replace(b"0.0952", b"1e999")),
         ("$.records.t[2][1]", text_of(listing_2()).replace(b"0.0952", b"1" * 5000)),
         ("$.records.b[1]", text_of(listing_2()).replace(b"[0, 1]", b"[-1.5e308, 1.5e308]")),
     ],
-    ids=["open", "no UTF-8", "NaN", "deep", "infinite", "long", "overflow"],
+    ids=["open", "no UTF-8", "NaN", "half a character", "deep", "infinite", "long", "overflow"],
 )
 def test_broken_texts_name_the_place(path: str, text: bytes) -> None:
     with pytest.raises(FormatError) as caught:
@@ -221,6 +237,31 @@ def test_damage_is_an_error_or_another_clip(at: int, byte: int, cut: bool) -> No
 @pytest.mark.parametrize("path", sorted(GOLDEN.glob("*.diffma.json")), ids=lambda p: p.name)
 def test_golden_documents_give_the_same_file(path: Path) -> None:
     assert mp.decompress(path) == (GOLDEN / diffma_json.stem(path.name)).read_bytes()
+
+
+def test_the_schema_is_that_of_the_types() -> None:
+    assert diffma_schema.schema() == SCHEMA
+
+
+def test_errors_say_what_was_expected_and_found() -> None:
+    cases = {
+        ("bits", 13): "$.params.bits; expected number <= 12.0; found 13",
+        ("class", "Other"): '$.params.class; expected "DiffMA" or "DiffMAx"; found "Other"',
+        ("bound", "2"): '$.params.bound; expected number or array; found "2"',
+        ("window", True): "$.params.window; expected number; found true",
+    }
+    for (key, value), message in cases.items():
+        document = listing_2()
+        document["params"][key] = value
+        with pytest.raises(FormatError) as caught:
+            mp.load(text_of(document))
+        assert str(caught.value) == message
+
+
+def test_whole_numbers_may_have_a_point() -> None:
+    document = listing_2()
+    document["params"]["bits"] = 6.0
+    assert mp.load(text_of(document)).frames == 5
 
 
 def test_packed_texts_are_limited(monkeypatch: pytest.MonkeyPatch) -> None:

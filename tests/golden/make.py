@@ -199,7 +199,7 @@ if __name__ == "__main__":
             put(f"{name}.back", partial(mp.decompress, HERE / f"{name}.mcz"))
     put("v1_embedded.amc", partial(bytes, WALK_LF))
     put("v1_embedded.amc.mcz", embedded)
-    put("v1_embedded.asf", partial(bytes, ASF))
+    put("v1_embedded.companion", partial(bytes, ASF))
     put("v1_trained.mcm", lambda: model_bytes(trained()))
     put("v1_trained.bvh", partial(bytes, WALK_BVH))
     put(

@@ -3,30 +3,24 @@
 import base64
 import binascii
 import json
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from math import inf
-from typing import Any
+from math import copysign, inf
+from typing import TypeVar
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
-from mocapress.codecs.diffma.coding import (
-    MOST_BITS,
-    MOST_ORDER,
-    MOST_WINDOW,
-    Coding,
-    Plan,
-    Record,
-)
-from mocapress.codecs.diffma.json_value import JsonValue, parse
-from mocapress.codecs.diffma.skeleton_json import ColumnPlace, read_skeleton, skeleton_keys
+from mocapress.codecs.diffma import json_types
+from mocapress.codecs.diffma.coding import Coding, Plan, Record
+from mocapress.codecs.diffma.json_types import fail
+from mocapress.codecs.diffma.skeleton_json import ColumnPlace, read_skeleton, write_skeleton
 from mocapress.motion import Skeleton
 
-_LIST = {"separators": (",", ":")}
+T = TypeVar("T")
 _ALPHABET, _OPCODE = 1, 2  # core/diffma/codec.hpp, Fault
 
 
@@ -80,49 +74,42 @@ class Document:
         for c in np.flatnonzero(~np.isfinite(channels).all(axis=1)).tolist():
             frame = int(np.flatnonzero(~np.isfinite(channels[c]))[0])
             found = f"{channels[c, frame]} in frame {frame}"
-            JsonValue(None, f"{place}.b[{c}]").fail("finite values", found)
+            fail(f"{place}.b[{c}]", "finite values", found)
         return np.ascontiguousarray(channels.T)
 
     def to_json(self) -> bytes:
-        """Give the document as JSON text, ASCII."""
-        parts = [
-            f'"channels":{json.dumps(self.names, **_LIST)}',  # type: ignore[arg-type]
-            f'"records":{_records_text(self.records)}',
-            f'"params":{json.dumps(self._params(), **_LIST)}',  # type: ignore[arg-type]
+        """Give the document as JSON text, UTF-8."""
+        root = json_types.Root(list(self.names), _write_records(self.records), self._params())
+        root.levels = [
+            json_types.Level(_number(level.bound), _write_records(level.records))
+            for level in self.levels
         ]
-        if self.levels:
-            levels = [
-                f'{{"bound":{_number(level.bound)},"records":{_records_text(level.records)}}}'
-                for level in self.levels
-            ]
-            parts.append(f'"levels":[{",".join(levels)}]')
         if self.skeleton is not None:
-            keys = skeleton_keys(self.skeleton, self.places)
-            parts.append(f'"skeleton":{json.dumps(keys, **_LIST)}')  # type: ignore[arg-type]
+            root.skeleton = write_skeleton(self.skeleton, self.places)
         if self.frame_time is not None:
-            parts.append(f'"frameTime":{self.frame_time}')
+            root.frame_time = float(self.frame_time)
         if self.layout:
-            parts.append(f'"layout":"{base64.b64encode(self.layout).decode()}"')
-        return f"{{{','.join(parts)}}}".encode("ascii")
+            root.layout = base64.b64encode(self.layout).decode()
+        return msgspec.json.encode(root)
 
-    def _params(self) -> dict[str, Any]:
+    def _params(self) -> json_types.Params:
         bounds = [_number(plan.bound) for plan in self.plans]
-        orders = [plan.order for plan in self.plans]
+        orders: list[float] = [plan.order for plan in self.plans]
         limits = [_limit(plan.max_error) for plan in self.plans]
         published = len(set(bounds)) <= 1 and not any(orders)
-        params: dict[str, Any] = {
-            "class": "DiffMA" if published else "DiffMAx",
-            "bits": self.coding.bits,
-            "window": self.coding.window,
-            "bound": _shared(bounds, 1),
-            "tolerance": _limit(self.coding.tolerance),
-            "roundOffset": _number(self.coding.round_offset),
-            "encoding": _encoding(self.coding.bits),
-        }
+        params = json_types.Params(
+            kind="DiffMA" if published else "DiffMAx",
+            bits=self.coding.bits,
+            window=self.coding.window,
+            bound=_shared(bounds, 1),
+            tolerance=_limit(self.coding.tolerance),
+            round_offset=_number(self.coding.round_offset),
+            encoding=_encoding(self.coding.bits),
+        )
         if any(orders):
-            params["order"] = _shared(orders, 0)
+            params.order = _shared(orders, 0)
         if any(limit is not None for limit in limits):
-            params["maxError"] = _shared(limits, None)
+            params.max_error = _shared(limits, None)
         return params
 
 
@@ -135,117 +122,112 @@ def read_document(data: bytes) -> Document:
         When it breaks the format: with the JSON path, what was expected and what was found.
 
     """
-    root = parse(data)
-    names = tuple(item.text() for item in root.get("channels").items())
-    coding, plans = _read_params(root.get("params"), len(names))
-    records, frames = _read_records(root.get("records"), len(names), coding.bits, None)
-    skeleton, places = read_skeleton(root.get("skeleton"), len(names))
-    time, layout = root.get("frameTime"), root.get("layout")
+    root = json_types.read(data)
+    channels = len(root.channels)
+    coding, plans = _read_params(root.params, channels)
+    records, frames = _read_records(root.records, "$.records", channels, coding.bits, None)
+    levels = []
+    for i, level in enumerate(root.levels):
+        place = f"$.levels[{i}].records"
+        own, _ = _read_records(level.records, place, channels, coding.bits, frames)
+        levels.append(Level(level.bound, own))
+    skeleton: Skeleton | None = None
+    places: tuple[ColumnPlace, ...] = ()
+    if root.skeleton is not msgspec.UNSET:
+        skeleton, places = read_skeleton(root.skeleton, channels)
     return Document(
-        names,
+        tuple(root.channels),
         coding,
         plans,
         records,
         frames,
-        _read_levels(root.get("levels"), len(names), coding.bits, frames),
+        tuple(levels),
         skeleton,
         places,
-        None if time.missing else Decimal(repr(time.number(0))),
-        b"" if layout.missing else _read_base64(layout),
+        None if root.frame_time is msgspec.UNSET else Decimal(repr(root.frame_time)),
+        b"" if root.layout is msgspec.UNSET else _read_base64(root.layout),
     )
 
 
-def _read_params(params: JsonValue, channels: int) -> tuple[Coding, tuple[Plan, ...]]:
-    bits = params.get("bits").integer(1, MOST_BITS)
-    params.get("encoding").choice([_encoding(bits)], None if bits > 6 else "base85")
-    params.get("class").choice(["DiffMA", "DiffMAx"], "DiffMA")
-    window = params.get("window").integer(1, MOST_WINDOW)
-    bounds = [value.positive() for value in _per_channel(params.get("bound"), channels)]
-    orders = [0] * channels
-    if not params.get("order").missing:
-        each = _per_channel(params.get("order"), channels)
-        orders = [value.integer(0, MOST_ORDER) for value in each]
-    tolerance, offset = params.get("tolerance"), params.get("roundOffset")
-    coding = Coding(
-        bits,
-        window,
-        inf if tolerance.missing or tolerance.value is None else tolerance.positive(),
-        0.5 if offset.missing else offset.number(0, 1),
-    )
+def _read_params(params: json_types.Params, channels: int) -> tuple[Coding, tuple[Plan, ...]]:
+    bits = int(params.bits)
+    if params.encoding != _encoding(bits):
+        fail("$.params.encoding", f'"{_encoding(bits)}"', f'"{params.encoding}"')
+    bounds = _per_channel(params.bound, "$.params.bound", channels)
+    order = 0 if params.order is msgspec.UNSET else params.order
+    orders = map(int, _per_channel(order, "$.params.order", channels))
+    tolerance = inf if params.tolerance is None else params.tolerance
+    coding = Coding(bits, int(params.window), tolerance, params.round_offset)
     return coding, tuple(Plan(*pair) for pair in zip(bounds, orders, strict=True))
 
 
-def _per_channel(value: JsonValue, channels: int) -> list[JsonValue]:
-    return value.items(channels) if isinstance(value.value, list) else [value] * channels
+def _per_channel(value: T | list[T], path: str, channels: int) -> list[T]:
+    if not isinstance(value, list):
+        return [value] * channels
+    return _of_length(value, path, channels)
+
+
+def _of_length(items: list[T], path: str, count: int) -> list[T]:
+    if len(items) != count:
+        fail(path, f"{count} items", str(len(items)))
+    return items
 
 
 def _read_records(
-    records: JsonValue, channels: int, bits: int, frames: int | None
+    records: json_types.Records, path: str, channels: int, bits: int, frames: int | None
 ) -> tuple[tuple[Record, ...], int]:
     """Read records; ``frames`` is what every channel must have, or None: what the first has."""
     found = []
-    tables = records.get("t").items(channels)
-    for text, table in zip(records.get("b").items(channels), tables, strict=True):
-        opcodes, numbers = text.text().encode("utf-8", "surrogatepass"), table.numbers()
+    tables = _of_length(records.t, f"{path}.t", channels)
+    texts = _of_length(records.b, f"{path}.b", channels)
+    for i, (text, table) in enumerate(zip(texts, tables, strict=True)):
+        opcodes = text.encode()
         steps, raws, fault, at = _core.diffma_scan(opcodes, bits)
         if fault:
             expected = {
                 _ALPHABET: "characters of the base85 alphabet (RFC 1924)",
                 _OPCODE: f"opcodes of {bits} bits",
             }.get(fault, "a second character")
-            place = f"{json.dumps(text.text()[at])} at {at}" if at < len(text.text()) else "the end"
-            text.fail(expected, place)
-        length = steps + 1 if len(opcodes) or len(numbers) else 0
-        if length and len(numbers) != raws + 1:
-            table.fail(f"{raws + 1} numbers, one and one per RAW", str(len(numbers)))
+            place = f"{json.dumps(text[at])} at {at}" if at < len(text) else "the end"
+            fail(f"{path}.b[{i}]", expected, place)
+        length = steps + 1 if len(opcodes) or len(table) else 0
+        if length and len(table) != raws + 1:
+            fail(f"{path}.t[{i}]", f"{raws + 1} numbers, one and one per RAW", str(len(table)))
         frames = length if frames is None else frames
         if length != frames:
-            text.fail(f"{frames} frames, as channel 0 has", str(length))
-        found.append(Record(opcodes, numbers))
+            fail(f"{path}.b[{i}]", f"{frames} frames, as channel 0 has", str(length))
+        found.append(Record(opcodes, np.array(table, dtype=np.float64)))
     return tuple(found), frames or 0
 
 
-def _read_levels(levels: JsonValue, channels: int, bits: int, frames: int) -> tuple[Level, ...]:
-    if levels.missing:
-        return ()
-    return tuple(
-        Level(
-            level.get("bound").positive(),
-            _read_records(level.get("records"), channels, bits, frames)[0],
-        )
-        for level in levels.items()
+def _read_base64(text: str) -> bytes:
+    try:
+        return base64.b64decode(text, validate=True)
+    except (binascii.Error, ValueError):
+        fail("$.layout", "base64", json_types.described(text))
+
+
+def _write_records(records: Sequence[Record]) -> json_types.Records:
+    opcodes = [record.opcodes.decode() for record in records]
+    return json_types.Records(
+        opcodes, [list(map(_number, record.table.tolist())) for record in records]
     )
 
 
-def _read_base64(value: JsonValue) -> bytes:
-    try:
-        return base64.b64decode(value.text(), validate=True)
-    except (binascii.Error, ValueError):
-        value.fail("base64")
-
-
-def _records_text(records: Sequence[Record]) -> str:
-    opcodes = ",".join(f'"{record.opcodes.decode()}"' for record in records)
-    tables = ",".join(f"[{_numbers_text(record.table)}]" for record in records)
-    return f'{{"b":[{opcodes}],"t":[{tables}]}}'
-
-
-def _numbers_text(numbers: NDArray[np.float64]) -> str:
-    return re.sub(r"\.0(?=,|$)", "", ",".join(map(repr, numbers.tolist())))
-
-
-def _encoding(bits: int) -> str:
+def _encoding(bits: int) -> json_types.Encoding:
     return "base85" if bits <= 6 else "base85x2"
 
 
-def _shared(values: list[Any], default: Any) -> Any:
+def _shared(values: list[T], default: T) -> T | list[T]:
     """Give the one value that all have, or all of them."""
     return values if len(set(values)) > 1 else next(iter(values), default)
 
 
-def _limit(value: float) -> int | float | None:
+def _limit(value: float) -> float | None:
     return None if value == inf else _number(value)
 
 
-def _number(value: float) -> int | float:
-    return int(value) if value.is_integer() and abs(value) < 1e15 else value
+def _number(value: float) -> float:
+    """Give a whole number as an integer, which JSON writes without a point; -0.0 has no integer."""
+    whole = value.is_integer() and abs(value) < 1e15 and (value or copysign(1, value) > 0)
+    return int(value) if whole else value

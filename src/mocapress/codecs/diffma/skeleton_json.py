@@ -1,14 +1,13 @@
 """The skeleton of a DiffMA JSON: what a player needs to move it."""
 
 from collections.abc import Sequence
-from typing import Any, cast
+from typing import Any
 
-from mocapress.codecs.diffma.json_value import JsonValue
+import msgspec
+
+from mocapress.codecs.diffma import json_types
+from mocapress.codecs.diffma.json_types import described, fail
 from mocapress.motion import Joint, Skeleton
-from mocapress.motion.skeleton import Vec3
-
-_KINDS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")
-_AXIS_ORDERS = ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")
 
 ColumnPlace = tuple[int, str]
 """A channel's joint (-1: none) and kind."""
@@ -16,66 +15,65 @@ ColumnPlace = tuple[int, str]
 
 def skeleton_keys(skeleton: Skeleton, places: Sequence[ColumnPlace]) -> dict[str, Any]:
     """Give a skeleton, and where its channels belong, as plain data."""
-    return {
-        "rotation": skeleton.rotation,
-        "angleUnit": skeleton.angle_unit,
-        "lengthUnit": skeleton.length_unit,
-        "joints": [_joint_keys(joint) for joint in skeleton.joints],
-        "columns": [list(place) for place in places],
-    }
+    made: dict[str, Any] = msgspec.to_builtins(write_skeleton(skeleton, places))
+    return made
+
+
+def write_skeleton(skeleton: Skeleton, places: Sequence[ColumnPlace]) -> json_types.Skeleton:
+    """Give a skeleton, and where its channels belong, as it stands in a document."""
+    joints = [
+        json_types.Joint(
+            joint.name,
+            joint.parent,
+            joint.offset,
+            joint.channels,  # type: ignore[arg-type]
+            joint.axis if any(joint.axis) else msgspec.UNSET,
+            joint.axis_order if any(joint.axis) else "xyz",  # type: ignore[arg-type]
+            joint.ends,
+        )
+        for joint in skeleton.joints
+    ]
+    return json_types.Skeleton(
+        rotation=skeleton.rotation,  # type: ignore[arg-type]
+        angle_unit=skeleton.angle_unit,  # type: ignore[arg-type]
+        length_unit=skeleton.length_unit,
+        joints=joints,
+        columns=list(places),
+    )
 
 
 def read_skeleton(
-    value: JsonValue, channels: int
-) -> tuple[Skeleton | None, tuple[ColumnPlace, ...]]:
-    """Read a skeleton of so many channels, where there is one.
+    found: json_types.Skeleton, channels: int
+) -> tuple[Skeleton, tuple[ColumnPlace, ...]]:
+    """Read a skeleton of so many channels, and where they belong.
 
     Raises
     ------
     FormatError
-        When it is none, with the JSON path.
+        When parents do not stand before their children, or columns and joints do not fit.
 
     """
-    if value.missing:
-        return None, ()
-    joints = tuple(_read_joint(item, i) for i, item in enumerate(value.get("joints").items()))
-    length = value.get("lengthUnit")
-    skeleton = Skeleton(
-        joints,
-        value.get("rotation").choice(["moving", "fixed"]),
-        value.get("angleUnit").choice(["deg", "rad"], "deg"),
-        None if length.missing or length.value is None else length.number(),
-    )
-    places = []
-    for column in value.get("columns").items(channels):
-        joint, kind = column.items(2)
-        places.append((joint.integer(-1, len(joints) - 1), kind.text()))
-    return skeleton, tuple(places)
-
-
-def _joint_keys(joint: Joint) -> dict[str, Any]:
-    keys: dict[str, Any] = {"name": joint.name, "parent": joint.parent, "offset": joint.offset}
-    if joint.channels:
-        keys["channels"] = joint.channels
-    if any(joint.axis):
-        keys |= {"axis": joint.axis, "axisOrder": joint.axis_order}
-    if joint.ends:
-        keys["ends"] = joint.ends
-    return keys
-
-
-def _read_joint(value: JsonValue, index: int) -> Joint:
-    channels, axis, ends = value.get("channels"), value.get("axis"), value.get("ends")
-    return Joint(
-        value.get("name").text(),
-        value.get("parent").integer(-1, index - 1),  # parents stand before their children
-        _vector(value.get("offset")),
-        () if channels.missing else tuple(item.choice(_KINDS) for item in channels.items()),
-        (0.0, 0.0, 0.0) if axis.missing else _vector(axis),
-        value.get("axisOrder").choice(_AXIS_ORDERS, "xyz"),
-        ends=() if ends.missing else tuple(_vector(item) for item in ends.items()),
-    )
-
-
-def _vector(value: JsonValue) -> Vec3:
-    return cast(Vec3, tuple(value.numbers(3).tolist()))
+    joints = []
+    for i, joint in enumerate(found.joints):
+        if joint.parent >= i:
+            place = f"$.skeleton.joints[{i}].parent"
+            fail(place, f"-1 to {i - 1}, parents before their children", described(joint.parent))
+        axis = (0.0, 0.0, 0.0) if joint.axis is msgspec.UNSET else joint.axis
+        joints.append(
+            Joint(
+                joint.name,
+                int(joint.parent),
+                joint.offset,
+                joint.channels,
+                axis,
+                joint.axis_order,
+                ends=joint.ends,
+            )
+        )
+    if len(found.columns) != channels:
+        fail("$.skeleton.columns", f"{channels} items", str(len(found.columns)))
+    for i, (index, _) in enumerate(found.columns):
+        if index >= len(joints):
+            fail(f"$.skeleton.columns[{i}][0]", f"-1 to {len(joints) - 1}", described(index))
+    skeleton = Skeleton(tuple(joints), found.rotation, found.angle_unit, found.length_unit)
+    return skeleton, tuple((int(joint), kind) for joint, kind in found.columns)
