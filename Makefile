@@ -76,7 +76,7 @@ check_contracted := $(CXX) -O3 -mavx2 -mfma $(EXACT) $(ONE) -ffp-contract=fast
 build/check/%: $(wildcard core/check/*) $(kernels) $(headers)
 	@mkdir -p $(@D)
 	$(check_$(*D)) core/check/$(*F).cpp $(wildcard core/$(*F)/*.cpp core/$(*F)_*/*.cpp) \
-	    core/numbers/snap.cpp core/numbers/line.cpp -o $@
+	    core/numbers/line.cpp core/numbers/powers.cpp -o $@
 
 bench: $(VENV)/.built corpus
 	$(BIN)/mocapress bench lossless $(if $(wildcard corpus/.version),corpus/amc/cmu)

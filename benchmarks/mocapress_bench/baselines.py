@@ -28,7 +28,7 @@ class _OneAlpha(Codec):
 
     @property
     def coding(self) -> Coding:
-        """What the compiled coder is told."""
+        """Settings of the compiled coder."""
         return Coding((self.alpha,), 1, self.mantissa_limit, self.chunk)
 
     def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:  # noqa: ARG002

@@ -108,7 +108,7 @@ def speed(path: Path, repeat: int = 5) -> dict[str, float]:
     codec, frames = DiffMA(), channels.shape[1]
     plans = codec.plan(clip)
     records = codec.coding.encode(channels, plans)
-    text = clip_to_json(clip.with_values(channels.T), codec)
+    text = clip_to_json(clip.with_frames(channels.T, clip.frame_time), codec)
     found = {
         "encode, 1 core": _best(
             lambda: [codec.coding.encode(c[None], plans[:1]) for c in channels],

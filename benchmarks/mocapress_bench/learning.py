@@ -113,5 +113,5 @@ def _bounded(paths: Sequence[Path], most_frames: int) -> Iterator[Clip]:
             clip = read(Source(path))
         except FormatError:
             continue  # said when it is measured
-        yield clip.with_values(clip.values[:left])
+        yield clip[:left]
         left -= clip.frames

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 Values = NDArray[np.float64]
 _MOST_DIGITS = 15
-"""Decimal numbers of so many digits are told apart by their doubles."""
+"""Decimal numbers with up to this many digits have different doubles."""
 _EXACT_POWER = 22
 """10 to this power is the largest that is exact in a double."""
 

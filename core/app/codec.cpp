@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "app/correction.hpp"
+#include "coding/sides.hpp"
 
 namespace mocapress::app {
 namespace {
@@ -200,13 +201,33 @@ void for_each_column(Columns& matrix, std::size_t frames, std::span<const Column
   }
 }
 
-// Writes the values row by row, snapped to their grids.
+// Codes the values of `matrix`. Throws std::invalid_argument where the reading side finds what no
+// writing side makes.
+template <class Side>
+void code_columns(Side& side, Columns& matrix, std::size_t frames, std::span<const Column> columns,
+                  const Parameters& parameters, const Bytes& choices) {
+  Corrections corrections(parameters.mantissa_limit);
+  for_each_column(matrix, frames, columns, parameters, choices, [&](double* column, auto predict) {
+    using Float = decltype(predict(0));
+    auto& correction = corrections.of<Float>();
+    for (std::size_t j = 0; j < frames; ++j) {
+      column[j] = correction.code(side, static_cast<Float>(column[j]), predict(j));
+    }
+    if constexpr (Side::kReading) {
+      if (!side.sound()) throw std::invalid_argument("the values are cut off");
+    }
+  });
+  if (!corrections.sound()) throw std::invalid_argument("a correction leaves its range");
+}
+
+// Writes the values row by row, moved to their lines.
 void restore(Columns& matrix, double* values, std::size_t frames, std::span<const Column> columns) {
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const double* column = matrix[c];
-    const Grid grid = columns[c].precision == Precision::snapped32 ? columns[c].grid : Grid::none;
+    const bool snapped = columns[c].precision == Precision::snapped32;
+    const NumberLine line(snapped ? columns[c].line : Line::float64, columns[c].digits);
     for (std::size_t j = 0; j < frames; ++j) {
-      values[j * columns.size() + c] = snap(column[j], grid, columns[c].digits);
+      values[j * columns.size() + c] = line.nearest(column[j]);
     }
   }
 }
@@ -217,9 +238,9 @@ std::vector<Precision> precisions(const double* values, std::size_t frames,
                                   std::span<const Column> columns) {
   std::vector<Precision> found;
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    const auto restored_by = [&](Grid grid) {
+    const auto restored_by = [&](const NumberLine& line) {
       for (std::size_t i = c; i < frames * columns.size(); i += columns.size()) {
-        const double kept = snap(static_cast<float>(values[i]), grid, columns[c].digits);
+        const double kept = line.nearest(static_cast<float>(values[i]));
         if (std::bit_cast<std::uint64_t>(kept) != std::bit_cast<std::uint64_t>(values[i]) ||
             std::isnan(kept)) {  // which of its bits a conversion keeps depends on the machine
           return false;
@@ -227,9 +248,9 @@ std::vector<Precision> precisions(const double* values, std::size_t frames,
       }
       return true;
     };
-    found.push_back(restored_by(Grid::none)        ? Precision::float32
-                    : restored_by(columns[c].grid) ? Precision::snapped32
-                                                   : Precision::float64);
+    found.push_back(restored_by({Line::float64, 0})                     ? Precision::float32
+                    : restored_by({columns[c].line, columns[c].digits}) ? Precision::snapped32
+                                                                        : Precision::float64);
   }
   return found;
 }
@@ -243,16 +264,10 @@ Bytes encode(const double* values, std::size_t frames, std::span<const Column> c
   Columns matrix = stored(values, frames, columns);
   const Bytes choices = choose_alphas(matrix, frames, columns, parameters);
   Bytes payload = pack(choices, index_bits(parameters));
-  Encoder encoder;
-  Corrections corrections(parameters.mantissa_limit);
-  for_each_column(matrix, frames, columns, parameters, choices, [&](double* column, auto predict) {
-    using Float = decltype(predict(0));
-    auto& correction = corrections.of<Float>();
-    for (std::size_t j = 0; j < frames; ++j) {
-      correction.encode(encoder, static_cast<Float>(column[j]), predict(j));
-    }
-  });
-  encoder.finish(payload);
+  RangeWriting side;
+  code_columns(side, matrix, frames, columns, parameters, choices);
+  const Bytes coded = side.finish();
+  payload.insert(payload.end(), coded.begin(), coded.end());
   return payload;
 }
 
@@ -263,16 +278,10 @@ void decode(ByteView payload, double* values, std::size_t frames, std::span<cons
   const Bytes choices =
       unpack(payload.first(indices), clusters_of(frames, parameters.cluster) * columns.size(),
              index_bits(parameters));
-  Decoder decoder(payload.subspan(indices));
-  Corrections corrections(parameters.mantissa_limit);
+  RangeReading side(payload.subspan(indices));
   Columns matrix(frames, columns);
-  for_each_column(matrix, frames, columns, parameters, choices, [&](double* column, auto predict) {
-    auto& correction = corrections.of<decltype(predict(0))>();
-    for (std::size_t j = 0; j < frames; ++j) column[j] = correction.decode(decoder, predict(j));
-    if (!decoder.sound()) throw std::invalid_argument("the values are cut off");
-  });
-  if (!decoder.exhausted()) throw std::invalid_argument("bytes are left over after the values");
-  if (!corrections.sound()) throw std::invalid_argument("a correction leaves its range");
+  code_columns(side, matrix, frames, columns, parameters, choices);
+  if (!side.exhausted()) throw std::invalid_argument("bytes are left over after the values");
   restore(matrix, values, frames, columns);
 }
 

@@ -8,20 +8,20 @@
 #include <span>
 #include <vector>
 
-#include "coding/range_coder.hpp"
-#include "numbers/snap.hpp"
+#include "coding/bit.hpp"
+#include "numbers/line.hpp"
 
 namespace mocapress::app {
 
 // What is stored of a value: a float32 where that gives the value back, alone or snapped to the
-// column's decimal grid.
+// column's line.
 enum class Precision : std::uint8_t { float64, float32, snapped32 };
 
 struct Column {
   std::int32_t parent;  // the column that predicts this one; -1 for none
   Precision precision;
-  Grid grid;
-  std::int32_t digits;
+  Line line;  // on which its numbers lie, which says nothing where it is float64
+  int digits;
 };
 
 struct Parameters {

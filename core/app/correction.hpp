@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "coding/range_coder.hpp"
+#include "coding/numbers.hpp"
 
 namespace mocapress::app {
 
@@ -61,51 +61,40 @@ class Correction {
   explicit Correction(int mantissa_limit)
       : limit_(mantissa_limit), mantissas_(std::size_t{1} << L::exponent_bits) {}
 
-  void encode(Encoder& encoder, Float actual, Float predicted) {
-    const auto a = Parts<Float>::split(actual);
+  template <class Side>
+  Float code(Side& side, Float actual, Float predicted) {
+    auto value = Parts<Float>::split(actual);
     const auto p = Parts<Float>::split(predicted);
-    const int difference = a.exponent - p.exponent;
-    const bool far = a.sign != p.sign || std::abs(difference) > kFarthest;
-    const bool same = !far && difference == 0;
-    encoder.bit(moved_, !same);
-    if (same) {
-      Mantissa& context = mantissas_[static_cast<std::size_t>(a.exponent)];
-      const std::int64_t correction = a.mantissa - p.mantissa;
-      const bool escape =
-          static_cast<int>(std::bit_width(static_cast<std::uint64_t>(std::abs(correction)))) >=
-          limit_;
-      if (can_escape()) encoder.bit(context.escape, escape);
-      if (!escape) return context.difference.encode(encoder, correction);  // step 4
-    } else {
-      expo_diff_.encode(encoder, far ? kFar : static_cast<unsigned>(difference + kFarthest));
-      if (far) {  // step 3
-        encoder.raw(a.sign, 1);
-        encoder.raw(static_cast<std::uint64_t>(a.exponent), L::exponent_bits);
-      }
-    }
-    encoder.raw(static_cast<std::uint64_t>(a.mantissa), L::mantissa_bits);  // step 5
-  }
-
-  Float decode(Decoder& decoder, Float predicted) {
-    auto value = Parts<Float>::split(predicted);
-    if (!decoder.bit(moved_)) {
-      Mantissa& context = mantissas_[static_cast<std::size_t>(value.exponent)];
-      if (!can_escape() || !decoder.bit(context.escape)) {
-        value.mantissa += context.difference.decode(decoder);
+    const int difference = value.exponent - p.exponent;
+    const bool far = value.sign != p.sign || std::abs(difference) > kFarthest;
+    if (!side.bit(moved_, far || difference != 0)) {
+      Mantissa& context = mantissas_[static_cast<std::size_t>(p.exponent)];
+      const std::int64_t correction = value.mantissa - p.mantissa;
+      const auto width = std::bit_width(static_cast<std::uint64_t>(std::abs(correction)));
+      const bool escape = static_cast<int>(width) >= limit_;
+      value.sign = p.sign;
+      value.exponent = p.exponent;
+      if (!can_escape() || !side.bit(context.escape, escape)) {  // step 4
+        const auto coded = static_cast<std::uint64_t>(context.difference.code(side, correction));
+        value.mantissa = static_cast<std::int64_t>(static_cast<std::uint64_t>(p.mantissa) + coded);
         if (value.mantissa >> L::mantissa_bits != 0) sound_ = false;
         return value.join();
       }
     } else {
-      const unsigned symbol = expo_diff_.decode(decoder);
+      const unsigned symbol =
+          expo_diff_.code(side, far ? kFar : static_cast<unsigned>(difference + kFarthest));
       if (symbol < kFar) {
-        value.exponent += static_cast<int>(symbol) - kFarthest;
+        value.sign = p.sign;
+        value.exponent = p.exponent + static_cast<int>(symbol) - kFarthest;
         if (value.exponent >> L::exponent_bits != 0) sound_ = false;
-      } else {
-        value.sign = decoder.raw(1) != 0;
-        value.exponent = static_cast<int>(decoder.raw(L::exponent_bits));
+      } else {  // step 3
+        value.sign = side.raw(1, value.sign ? 1 : 0) != 0;
+        value.exponent = static_cast<int>(
+            side.raw(L::exponent_bits, static_cast<std::uint64_t>(value.exponent)));
       }
     }
-    value.mantissa = static_cast<std::int64_t>(decoder.raw(L::mantissa_bits));
+    value.mantissa = static_cast<std::int64_t>(  // step 5
+        side.raw(L::mantissa_bits, static_cast<std::uint64_t>(value.mantissa)));
     return value.join();
   }
 

@@ -14,18 +14,18 @@ namespace {
 constexpr std::size_t kFrames = 600, kChannels = 12;
 constexpr double kAlphas[] = {-1, -1.0 / 3, 0, 1.0 / 3, 0.5, 2.0 / 3, 1, 5.0 / 3};
 
-std::vector<app::Column> columns_on(mocapress::Grid grid) {
+std::vector<app::Column> columns_on(mocapress::Line line) {
   std::vector<app::Column> columns(kChannels);
   for (std::size_t c = 0; c < kChannels; ++c) {
-    columns[c] = {static_cast<std::int32_t>(c) - 1, app::Precision::float64, grid, 4};
+    columns[c] = {static_cast<std::int32_t>(c) - 1, app::Precision::float64, line, 4};
   }
   return columns;
 }
 
-bool check_one(const std::string& name, const std::vector<double>& values, mocapress::Grid grid,
+bool check_one(const std::string& name, const std::vector<double>& values, mocapress::Line line,
                const app::Parameters& parameters) {
   const std::size_t frames = values.size() / kChannels;
-  auto columns = columns_on(grid);
+  auto columns = columns_on(line);
   const auto precisions = app::precisions(values.data(), frames, columns);
   for (std::size_t c = 0; c < kChannels; ++c) columns[c].precision = precisions[c];
   const auto payload = app::encode(values.data(), frames, columns, parameters);
@@ -45,12 +45,12 @@ int main() {
   for (const std::size_t cluster : {std::size_t{5}, std::size_t{15}}) {
     for (const int limit : {12, 53}) {
       const app::Parameters parameters{kAlphas, cluster, limit};
-      same &= check_one("on a grid", motion, mocapress::Grid::decimals, parameters);
-      same &= check_one("motion", motion, mocapress::Grid::none, parameters);
-      same &= check_one("noise", noise, mocapress::Grid::none, parameters);
+      same &= check_one("on a grid", motion, mocapress::Line::decimals, parameters);
+      same &= check_one("motion", motion, mocapress::Line::float64, parameters);
+      same &= check_one("noise", noise, mocapress::Line::float64, parameters);
     }
     const auto alphas =
-        app::ideal_alphas(motion.data(), kFrames, columns_on(mocapress::Grid::none), cluster);
+        app::ideal_alphas(motion.data(), kFrames, columns_on(mocapress::Line::float64), cluster);
     check::report("app, ideal alphas, t " + std::to_string(cluster), alphas);
   }
   return same ? 0 : 1;

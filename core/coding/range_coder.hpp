@@ -6,51 +6,14 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <span>
-#include <vector>
+
+#include "coding/bit.hpp"
 
 namespace mocapress {
 
-using Bytes = std::vector<std::uint8_t>;
-using ByteView = std::span<const std::uint8_t>;
-
-// The chance that a bit is 0, learned at two rates: the fast follows changes, the slow is precise.
-class Bit {
- public:
-  Bit() = default;
-  explicit Bit(std::uint16_t chance_of_zero) : fast_(chance_of_zero), slow_(chance_of_zero) {}
-
-  // In 1/65536, from 15 to 65521.
-  std::uint32_t chance_of_zero() const { return (std::uint32_t{fast_} + slow_) >> 1; }
-
-  void learn(bool one) {
-    fast_ = moved<4>(fast_, one);
-    slow_ = moved<7>(slow_, one);
-  }
-
-  // What was learned, for a coder that begins where another ended.
-  template <class Visit>
-  void visit(Visit&& each) {
-    each(fast_);
-    each(slow_);
-  }
-
- private:
-  template <int kRate>
-  static std::uint16_t moved(std::uint16_t chance, bool one) {
-    const int target = one ? 15 : 65520 + (1 << kRate);
-    return static_cast<std::uint16_t>(chance + ((target - chance) >> kRate));
-  }
-
-  std::uint16_t fast_ = 1 << 15;
-  std::uint16_t slow_ = 1 << 15;
-};
-
-class Encoder {
+class RangeEncoder {
  public:
   void bit(Bit& model, bool one) {
     chance(model.chance_of_zero(), one);
@@ -83,15 +46,17 @@ class Encoder {
     }
   }
 
-  // Appends what was coded to `bytes`; the encoder is used up.
-  void finish(Bytes& bytes) {
+  // What was coded; the encoder is used up.
+  Bytes finish() {
     flush();
+    Bytes bytes;
     while (raw_count_ > 0) put_raw_byte();
     std::size_t size = coded_.size();
     for (; size >= 0x80; size >>= 7) bytes.push_back(static_cast<std::uint8_t>(size | 0x80));
     bytes.push_back(static_cast<std::uint8_t>(size));
     bytes.insert(bytes.end(), coded_.begin(), coded_.end());
     bytes.insert(bytes.end(), raw_.begin(), raw_.end());
+    return bytes;
   }
 
  private:
@@ -142,9 +107,9 @@ class Encoder {
   Bytes raw_;
 };
 
-class Decoder {
+class RangeDecoder {
  public:
-  explicit Decoder(ByteView bytes) {
+  explicit RangeDecoder(ByteView bytes) {
     std::uint64_t size = 0;
     std::size_t start = 0;
     bool complete = false;
@@ -247,70 +212,6 @@ class Decoder {
   std::uint64_t range_ = ~std::uint64_t{0};
   std::uint64_t raw_held_ = 0;
   int raw_count_ = 0;
-};
-
-// A symbol of kBits bits: every bit, from the highest, has a model for each prefix.
-template <int kBits>
-class BitTree {
- public:
-  BitTree() = default;
-  // The chances of a 0 at first, in 1/65536, from 15 to 65520, by the prefix.
-  explicit BitTree(const std::array<std::uint16_t, std::size_t{1} << kBits>& chances) {
-    for (std::size_t i = 0; i < chances.size(); ++i) models_[i] = Bit(chances[i]);
-  }
-
-  template <class AnyEncoder>
-  void encode(AnyEncoder& encoder, unsigned symbol) {
-    unsigned prefix = 1;
-    for (int i = kBits; i-- > 0;) {
-      const unsigned one = symbol >> i & 1;
-      encoder.bit(models_[prefix], one != 0);
-      prefix = prefix << 1 | one;
-    }
-  }
-
-  template <class AnyDecoder>
-  unsigned decode(AnyDecoder& decoder) {
-    unsigned prefix = 1;
-    for (int i = kBits; i-- > 0;) prefix = prefix << 1 | (decoder.bit(models_[prefix]) ? 1 : 0);
-    return prefix - (1u << kBits);
-  }
-
-  template <class Visit>
-  void visit(Visit&& each) {
-    for (auto& model : models_) model.visit(each);
-  }
-
- private:
-  std::array<Bit, std::size_t{1} << kBits> models_;
-};
-
-// A difference of magnitude < 2^(2^kLengthBits - 1): its bit length is modelled (Elias gamma); the
-// sign and the bits below the leading one are raw.
-template <int kLengthBits>
-class Difference {
- public:
-  void encode(Encoder& encoder, std::int64_t value) {
-    const bool negative = value < 0;
-    const auto bits = static_cast<std::uint64_t>(value);
-    const std::uint64_t magnitude = negative ? 0 - bits : bits;
-    const int length = static_cast<int>(std::bit_width(magnitude));
-    lengths_.encode(encoder, static_cast<unsigned>(length));
-    if (length == 0) return;
-    const std::uint64_t below = magnitude - (std::uint64_t{1} << (length - 1));
-    encoder.raw(below << 1 | (negative ? 1 : 0), length);
-  }
-
-  std::int64_t decode(Decoder& decoder) {
-    const int length = static_cast<int>(std::min(lengths_.decode(decoder), 64u));
-    if (length == 0) return 0;
-    const std::uint64_t coded = decoder.raw(length);
-    const std::uint64_t magnitude = coded >> 1 | std::uint64_t{1} << (length - 1);
-    return static_cast<std::int64_t>((coded & 1) != 0 ? 0 - magnitude : magnitude);
-  }
-
- private:
-  BitTree<kLengthBits> lengths_;
 };
 
 }  // namespace mocapress

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "coding/range_coder.hpp"
+#include "coding/bit.hpp"
 
 namespace mocapress {
 
@@ -43,7 +43,9 @@ class RansEncoder {
   }
 
   // `value` < count <= 2^15
-  void uniform(std::uint32_t value, std::uint32_t count) { put(uniform_interval(value, count)); }
+  void uniform(std::uint64_t value, std::uint64_t count) {
+    put(uniform_interval(static_cast<std::uint32_t>(value), static_cast<std::uint32_t>(count)));
+  }
 
   // `value` < 2^count, count <= 64
   void raw(std::uint64_t value, int count) {
@@ -104,9 +106,10 @@ class RansDecoder {
     return one;
   }
 
-  std::uint32_t uniform(std::uint32_t count) {
-    const std::uint32_t value = peek() * count >> kRansBits;
-    take(uniform_interval(value, count));
+  std::uint64_t uniform(std::uint64_t count) {
+    const auto small = static_cast<std::uint32_t>(count);
+    const std::uint32_t value = peek() * small >> kRansBits;
+    take(uniform_interval(value, small));
     return value;
   }
 

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "coding/sides.hpp"
 #include "exact/model.hpp"
-#include "exact/sides.hpp"
 #include "exact_fast/codec.hpp"
 
 namespace mocapress::exact {
@@ -78,7 +78,7 @@ std::vector<Part> parts(const Clip& clip) {
 
 Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* learned) {
   if (clip.level <= kFastLevels) return encode_fast(values, frames, clip, learned);
-  Writing side;
+  RangeWriting side;
   const std::size_t count = clip.columns.size();
   std::vector<bool> cuts(frames);
   for (std::size_t f = 0; f < frames; ++f) cuts[f] = is_cut(values, frames, count, f);
@@ -99,7 +99,7 @@ Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* 
 
 void decode(ByteView payload, double* values, std::size_t frames, const Clip& clip) {
   if (clip.level <= kFastLevels) return decode_fast(payload, values, frames, clip);
-  Reading side(payload);
+  RangeReading side(payload);
   for (const Part& part : parts(clip)) {
     if (!side.sound()) break;
     Model model(part.clip());

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "coding/range_coder.hpp"
+#include "coding/bit.hpp"
 #include "numbers/line.hpp"
 
 namespace mocapress::exact {

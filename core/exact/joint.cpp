@@ -8,14 +8,13 @@
 namespace mocapress::exact {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
 constexpr double kShapes = 27 * 9;
 constexpr double kLoosest = 1000;
 constexpr double kBlind = 1e-12;  // below, the target's turn moves nothing
 
 // `vector` turned about an axis by an angle in degrees.
-std::array<double, 3> turned(std::size_t axis, double angle, std::array<double, 3> vector) {
-  const auto [sine, cosine] = sine_cosine(angle * kDegree);
+Vector turned(std::size_t axis, double angle, Vector vector) {
+  const auto [sine, cosine] = sine_cosine(angle * kRadiansPerDegree);
   double& y = vector[(axis + 1) % 3];
   double& z = vector[(axis + 2) % 3];
   const double moved = y * cosine - z * sine;
@@ -48,8 +47,7 @@ Joint::Joint(std::size_t sources, std::span<const double> parameters)
   }
   target_ = shape % 3;
   places_ = {shape / 3, 3 - target_ - shape / 3};
-  length_ = std::sqrt((u_[0] * u_[0] + u_[1] * u_[1] + u_[2] * u_[2]) *
-                      (v_[0] * v_[0] + v_[1] * v_[1] + v_[2] * v_[2]));
+  length_ = std::sqrt(dot(u_, u_) * dot(v_, v_));
 }
 
 Joint::Angles Joint::angles(const double* sources, double unknown) const {
@@ -67,9 +65,9 @@ Joint::Angles Joint::angles(const double* sources, double unknown) const {
   const double size = std::sqrt(a * a + b * b);
   if (!(size > kBlind)) return {unknown, unknown, kLoosest};
   const double cosine = std::clamp((c_ - left[x] * right[x]) / size, -1.0, 1.0);
-  const double middle = arc_tangent(b, a) / kDegree;
+  const double middle = arc_tangent(b, a) / kRadiansPerDegree;
   const double sine = std::sqrt((1 - cosine) * (1 + cosine));
-  const double away = arc_tangent(sine, cosine) / kDegree;
+  const double away = arc_tangent(sine, cosine) / kRadiansPerDegree;
   return {middle - away, middle + away, length_ / std::max(size * sine, length_ / kLoosest)};
 }
 

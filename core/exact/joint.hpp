@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <span>
 
+#include "motion/vector.hpp"
+
 namespace mocapress::exact {
 
 class Joint {
@@ -34,8 +36,6 @@ class Joint {
   Angles angles(const double* sources, double unknown) const;
 
  private:
-  using Vector = std::array<double, 3>;
-
   std::size_t sources_;
   std::array<std::size_t, 3> axes_{};
   std::size_t target_;

@@ -10,38 +10,12 @@
 namespace mocapress::exact {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
 constexpr double kFarthest = 1e5;  // degrees and lengths; numbers beyond are taken for this
 constexpr double kLeast = 1e-12;   // of a channel's precision
 
-using Vector = std::array<double, 3>;
-using Matrix = std::array<Vector, 3>;
-
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Vector sum(const Vector& a, const Vector& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-
-Vector scaled(const Vector& a, double by) { return {a[0] * by, a[1] * by, a[2] * by}; }
-
-Vector turned(const Matrix& m, const Vector& a) {
-  return sum(sum(scaled(m[0], a[0]), scaled(m[1], a[1])), scaled(m[2], a[2]));
-}
-
-Matrix product(const Matrix& a, const Matrix& b) {
-  return {turned(a, b[0]), turned(a, b[1]), turned(a, b[2])};
-}
-
-Matrix transposed(const Matrix& m) {
-  return {{{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}}};
-}
-
 // `m` after a turn about one of its own axes.
 void turn(Matrix& m, std::size_t axis, double degrees) {
-  const auto [sine, cosine] = sine_cosine(degrees * kDegree);
+  const auto [sine, cosine] = sine_cosine(degrees * kRadiansPerDegree);
   Vector& next = m[(axis + 1) % 3];
   Vector& last = m[(axis + 2) % 3];
   const Vector moved = sum(scaled(next, cosine), scaled(last, sine));
@@ -91,7 +65,7 @@ Kinematics::Kinematics(std::span<const Column> columns) : channel_of_(columns.si
   matrix_.resize(size);
   pushes_.resize(channels_.size());
   for (std::size_t b = 0; b < kBones; ++b) {
-    axes_[b] = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    axes_[b] = kIdentity;
     for (const std::size_t axis : {2, 1, 0}) turn(axes_[b], axis, kSkeletonBone[b].axis[axis]);
   }
 }
@@ -136,7 +110,7 @@ void Kinematics::stand(const Numbers& numbers, Pose& pose) {
         twist.linear[axis] = 1;
         continue;
       }
-      twist.angular = scaled(frame[axis], kDegree);
+      twist.angular = scaled(frame[axis], kRadiansPerDegree);
       twist.linear = cross(start, twist.angular);
       turn(frame, axis, numbers[place]);
     }

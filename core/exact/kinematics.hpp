@@ -15,6 +15,7 @@
 #include "exact/codec.hpp"
 #include "exact/expert.hpp"
 #include "exact/kinematics_tables.hpp"
+#include "motion/vector.hpp"
 
 namespace mocapress::exact {
 
@@ -32,9 +33,6 @@ class Kinematics {
   double guess(std::size_t channel, const Frames& frames) const;
 
  private:
-  using Vector = std::array<double, 3>;
-  using Matrix = std::array<Vector, 3>;  // its columns
-
   struct Channel {
     std::size_t column;
     double unit;  // from numbers to levels

@@ -10,7 +10,6 @@
 namespace mocapress::exact {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
 constexpr int kMostSteps = 12;   // of the fixed point for y3
 constexpr int kMiddleSteps = 8;  // of the fixed point for y of the second joint
 constexpr double kFlattest = 0.1;
@@ -18,59 +17,39 @@ constexpr double kTurned = 1e-4;   // degrees; the same there
 constexpr double kSettled = 1e-8;  // a step below it is the last
 constexpr double kRight = 1e-3;    // degrees; a branch that is further off is the wrong one
 
-using Vector = std::array<double, 3>;
-
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Vector sum(const Vector& a, double times, const Vector& b) {
-  return {a[0] + times * b[0], a[1] + times * b[1], a[2] + times * b[2]};
-}
-
 Vector unit(const Vector& a) {
   const double length = std::max(std::sqrt(dot(a, a)), 1e-30);
   return {a[0] / length, a[1] / length, a[2] / length};
 }
 
-template <class Frame>
-Vector turned(const Frame& frame, const Vector& a) {
-  return sum(sum({frame.x[0] * a[0], frame.x[1] * a[0], frame.x[2] * a[0]}, a[1], frame.y), a[2],
-             frame.z);
-}
-
 // Rz Ry Rx.
-template <class Frame>
-Frame rotation(const SineCosine& x, const SineCosine& y, const SineCosine& z) {
+Matrix rotation(const SineCosine& x, const SineCosine& y, const SineCosine& z) {
   const auto [sx, cx] = x;
   const auto [sy, cy] = y;
   const auto [sz, cz] = z;
-  return {{cz * cy, sz * cy, -sy},
-          {cz * sy * sx - sz * cx, sz * sy * sx + cz * cx, cy * sx},
-          {cz * sy * cx + sz * sx, sz * sy * cx - cz * sx, cy * cx}};
+  return {{{cz * cy, sz * cy, -sy},
+           {cz * sy * sx - sz * cx, sz * sy * sx + cz * cx, cy * sx},
+           {cz * sy * cx + sz * sx, sz * sy * cx - cz * sx, cy * cx}}};
 }
 
-template <class Frame>
-Frame rotation(const double* degrees) {
-  return rotation<Frame>(sine_cosine(degrees[0] * kDegree), sine_cosine(degrees[1] * kDegree),
-                         sine_cosine(degrees[2] * kDegree));
+Matrix rotation(const double* degrees) {
+  return rotation(sine_cosine(degrees[0] * kRadiansPerDegree),
+                  sine_cosine(degrees[1] * kRadiansPerDegree),
+                  sine_cosine(degrees[2] * kRadiansPerDegree));
 }
 
 // `a` turned as the shortest way from one unit vector to another turns it.
 Vector swung(const Vector& from, const Vector& to, const Vector& a) {
   const Vector axis = cross(from, to);
   const double cosine = dot(from, to);
-  const Vector moved = sum({a[0] * cosine, a[1] * cosine, a[2] * cosine}, 1, cross(axis, a));
-  return sum(moved, dot(axis, a) / std::max(1 + cosine, 1e-9), axis);
+  const Vector moved = sum(scaled(a, cosine), cross(axis, a));
+  return sum(moved, scaled(axis, dot(axis, a) / std::max(1 + cosine, 1e-9)));
 }
 
 // The turn about y that is left of the way from a to b after its swing.
-template <class Frame>
-double twist(const Frame& a, const Frame& b) {
-  const Vector x = swung(a.y, b.y, a.x);
-  return arc_tangent(dot(x, b.z), dot(x, b.x));
+double twist(const Matrix& a, const Matrix& b) {
+  const Vector x = swung(a[1], b[1], a[0]);
+  return arc_tangent(dot(x, b[2]), dot(x, b[0]));
 }
 
 // g and h of a branch.
@@ -133,12 +112,10 @@ std::span<const double> twist_table(LawKind kind) {
 constexpr Vector kUp = {0, 1, 0};
 
 // The last joint's twist: odd in those of the joints before it and in how far they leave a plane.
-template <class Frame>
-double third_twist(std::span<const double> table, const Frame& first, const Frame& second,
+double third_twist(std::span<const double> table, const Matrix& first, const Matrix& second,
                    const Vector& bends) {
-  const Frame parent = {{1, 0, 0}, kUp, {0, 0, 1}};
-  const std::array<double, 3> odd = {twist(parent, first), twist(first, second),
-                                     dot(kUp, cross(first.y, second.y))};
+  const std::array<double, 3> odd = {twist(kIdentity, first), twist(first, second),
+                                     dot(kUp, cross(first[1], second[1]))};
   double turn = 0;
   std::size_t used = 0;
   for (const double factor : odd) {
@@ -169,10 +146,10 @@ void Law::begin(const double* sources) {
   if (kind_ <= LawKind::neck) return begin_chain(sources);
   if (kind_ >= LawKind::spine_middle) return begin_middle(sources);
   // The thumb points along (0.3, 0.5, 1) in the hand, which has turned by x.
-  const auto [sine, cosine] = sine_cosine(sources[0] * kDegree);
+  const auto [sine, cosine] = sine_cosine(sources[0] * kRadiansPerDegree);
   axis_ = {0.3, 0.5 * cosine + sine, cosine - 0.5 * sine};
-  first_ = arc_sine(axis_[1] / std::sqrt(1.34)) / kDegree;
-  const double away = 45 - arc_tangent(axis_[0], axis_[2]) / kDegree;
+  first_ = arc_sine(axis_[1] / std::sqrt(1.34)) / kRadiansPerDegree;
+  const double away = 45 - arc_tangent(axis_[0], axis_[2]) / kRadiansPerDegree;
   thumb_turn_ = sources[1] + (kind_ == LawKind::thumb ? away : -away);
 }
 
@@ -180,19 +157,18 @@ void Law::begin(const double* sources) {
 // the joints leave a plane; the latter depends on y.
 void Law::begin_middle(const double* sources) {
   const auto& table = kind_ == LawKind::spine_middle ? kSpineMiddle : kNeckMiddle;
-  const auto first = rotation<Frame>(sources);
-  const Frame parent = {{1, 0, 0}, kUp, {0, 0, 1}};
-  const double turn = twist(parent, first);
-  const double bend = 1 - dot(kUp, first.y);
-  const SineCosine x = sine_cosine(sources[3] * kDegree);
-  const SineCosine z = sine_cosine(sources[4] * kDegree);
+  const auto first = rotation(sources);
+  const double turn = twist(kIdentity, first);
+  const double bend = 1 - dot(kUp, first[1]);
+  const SineCosine x = sine_cosine(sources[3] * kRadiansPerDegree);
+  const SineCosine z = sine_cosine(sources[4] * kRadiansPerDegree);
   double last_off = 0;
   double moved = 0;
   for (int step = 0; step < kMiddleSteps; ++step) {
-    const auto local = rotation<Frame>(x, sine_cosine(first_ * kDegree), z);
-    const Vector y2 = turned(first, local.y);
-    const Vector bends = {bend, 1 - dot(kUp, y2), 1 - dot(first.y, y2)};
-    const double off_plane = dot(kUp, cross(first.y, y2));
+    const auto local = rotation(x, sine_cosine(first_ * kRadiansPerDegree), z);
+    const Vector y2 = turned(first, local[1]);
+    const Vector bends = {bend, 1 - dot(kUp, y2), 1 - dot(first[1], y2)};
+    const double off_plane = dot(kUp, cross(first[1], y2));
     double told = turn * linear(table.data(), bends) + off_plane * linear(table.data() + 4, bends);
     for (std::size_t i = 0; i <= 3; ++i) {
       double term = table[8 + i];
@@ -200,7 +176,7 @@ void Law::begin_middle(const double* sources) {
       told += term;
     }
     // A secant, whose slope is that of the twist alone, -1, to begin with.
-    const double off = (told - twist(parent, local)) / kDegree;
+    const double off = (told - twist(kIdentity, local)) / kRadiansPerDegree;
     const double slope = step == 0 ? -1 : (off - last_off) / moved;
     moved = slope < -kFlattest ? -off / slope : off;
     last_off = off;
@@ -210,43 +186,42 @@ void Law::begin_middle(const double* sources) {
 }
 
 void Law::begin_chain(const double* sources) {
-  const auto first = rotation<Frame>(sources);
-  const auto local = rotation<Frame>(sources + 3);
-  second_ = {turned(first, local.x), turned(first, local.y), turned(first, local.z)};
-  y1_ = first.y;
+  const auto first = rotation(sources);
+  const auto local = rotation(sources + 3);
+  second_ = product(first, local);
+  y1_ = first[1];
   axis_ = last_axis(branch_, bends_);
-  const Vector bends = {1 - dot(kUp, y1_), 1 - dot(kUp, second_.y), 1 - dot(y1_, second_.y)};
+  const Vector bends = {1 - dot(kUp, y1_), 1 - dot(kUp, second_[1]), 1 - dot(y1_, second_[1])};
   const double turn = third_twist(twist_table(kind_), first, second_, bends);
   // From here on in the second joint, whose y axis is up: x and z of the last joint, swung there
   // and turned.
   const Vector x = swung(kUp, axis_, {1, 0, 0});
   const Vector z = swung(kUp, axis_, {0, 0, 1});
   const auto [sine, cosine] = sine_cosine(turn);
-  first_ = arc_sine(-(cosine * x[2] - sine * z[2])) / kDegree;
+  first_ = arc_sine(-(cosine * x[2] - sine * z[2])) / kRadiansPerDegree;
 }
 
 // y2 is along y1 + g y3 + h y0, the y axes of parent and joints; g and h depend on the angles
 // between y0, y1 and y3 alone. `bends` are where to start from, and what it ends with.
-std::array<double, 3> Law::last_axis(std::size_t branch, std::array<double, 2>& bends) const {
+Vector Law::last_axis(std::size_t branch, std::array<double, 2>& bends) const {
   const Branch& table = branches(kind_)[branch];
   const double bend = 1 - dot(kUp, y1_);
-  const Vector& y2 = second_.y;
+  const Vector& y2 = second_[1];
   Vector y3 = y2;
   if (!(bends[0] >= 0 && bends[1] >= 0)) bends = {1 - dot(kUp, y2), 1 - dot(y1_, y2)};
   for (int step = 0; step < kMostSteps; ++step) {
     const auto [near, root] = shares(table, {bend, bends[0], bends[1]});
-    const Vector rest = sum(y1_, root, kUp);
+    const Vector rest = sum(y1_, scaled(kUp, root));
     const double along = dot(y2, rest);
     const double square = along * along - dot(rest, rest) + near * near;
     const double length = along + std::sqrt(std::max(square, 0.0));
-    y3 = sum({y2[0] * length, y2[1] * length, y2[2] * length}, -1, rest);
-    y3 = unit(y3);
+    y3 = unit(sum(scaled(y2, length), scaled(rest, -1)));
     const std::array<double, 2> found = {1 - dot(kUp, y3), 1 - dot(y1_, y3)};
     const double moved = std::max(std::fabs(found[0] - bends[0]), std::fabs(found[1] - bends[1]));
     bends = found;
     if (moved < kSettled) break;
   }
-  return {dot(second_.x, y3), dot(y2, y3), dot(second_.z, y3)};
+  return {dot(second_[0], y3), dot(y2, y3), dot(second_[2], y3)};
 }
 
 // Takes the branch that comes nearest to the second target.
@@ -256,7 +231,7 @@ void Law::choose_branch(double seen, double cosine_y) {
   for (std::size_t branch = 0; branch < branches(kind_).size(); ++branch) {
     std::array<double, 2> bends = start;
     const Vector axis = last_axis(branch, bends);
-    const double off = std::fabs(arc_sine(axis[2] / cosine_y) / kDegree - seen);
+    const double off = std::fabs(arc_sine(axis[2] / cosine_y) / kRadiansPerDegree - seen);
     if (!(off < nearest)) continue;
     nearest = off;
     branch_ = branch;
@@ -268,12 +243,13 @@ void Law::choose_branch(double seen, double cosine_y) {
 double Law::predict(std::size_t target, const double* targets) {
   if (target == 0) return first_;
   if (kind_ > LawKind::neck) return thumb_turn_;
-  const auto [sine_y, cosine_y] = sine_cosine(targets[0] * kDegree);
-  const double second = arc_sine(axis_[2] / cosine_y) / kDegree;
+  const auto [sine_y, cosine_y] = sine_cosine(targets[0] * kRadiansPerDegree);
+  const double second = arc_sine(axis_[2] / cosine_y) / kRadiansPerDegree;
   if (target == 1) return second;
   if (!(std::fabs(second - targets[1]) < kRight)) choose_branch(targets[1], cosine_y);
-  const auto [sine_x, cosine_x] = sine_cosine(targets[1] * kDegree);
-  return (arc_tangent(axis_[1], axis_[0]) - arc_tangent(cosine_x, sine_y * sine_x)) / kDegree;
+  const auto [sine_x, cosine_x] = sine_cosine(targets[1] * kRadiansPerDegree);
+  return (arc_tangent(axis_[1], axis_[0]) - arc_tangent(cosine_x, sine_y * sine_x)) /
+         kRadiansPerDegree;
 }
 
 }  // namespace mocapress::exact

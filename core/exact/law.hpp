@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "motion/vector.hpp"
+
 namespace mocapress::exact {
 
 // spine, neck: from x, y, z of two joints to y, x, z of the third, in a chain of three that turn
@@ -42,11 +44,6 @@ class Law {
   double predict(std::size_t target, const double* targets);
 
  private:
-  using Vector = std::array<double, 3>;
-  struct Frame {  // the axes of a joint
-    Vector x, y, z;
-  };
-
   void begin_chain(const double* sources);
   void begin_middle(const double* sources);
   Vector last_axis(std::size_t branch, std::array<double, 2>& bends) const;
@@ -56,8 +53,8 @@ class Law {
   Vector axis_{};     // where the last joint's y axis points, seen by the joint before
   double first_ = 0;  // the first target
   double thumb_turn_ = 0;
-  Frame second_{};  // the joint before the last
-  Vector y1_{};     // the y axis of the first one
+  Matrix second_{};  // the axes of the joint before the last
+  Vector y1_{};      // the y axis of the first one
   std::size_t branch_ = 0;
   std::array<double, 2> bends_{};  // of the last joint against the parent and the first joint
 };

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "coding/sides.hpp"
 #include "exact/blend.hpp"
 #include "exact/choice.hpp"
 #include "exact/codec.hpp"
@@ -21,7 +22,6 @@
 #include "exact/noise.hpp"
 #include "exact/plan.hpp"
 #include "exact/residual.hpp"
-#include "exact/sides.hpp"
 #include "exact/spread.hpp"
 #include "exact/turns.hpp"
 
@@ -45,11 +45,6 @@ struct Channel {
   Choice<Lawful::kPredictions + 1> choice;  // of the law's predictions and the blend
 };
 
-struct NoiseColumn {
-  NumberLine line;
-  Noise noise;
-};
-
 // What was learned is kept as floats, chances in 24 bits.
 inline float kept(double value) { return static_cast<float>(value); }
 inline float kept(std::uint16_t value) { return value; }
@@ -66,19 +61,15 @@ inline void take(std::uint32_t& value, float from) {
 class Model {
  public:
   explicit Model(const Clip& clip)
-      : count_(predicted(clip.columns)), frames_(count_), residual_(count_) {
+      : noise_(clip.columns), count_(noise_.first()), frames_(count_), residual_(count_) {
     const auto columns = clip.columns;
     const auto known = columns.first(count_);
     if (knows_skeleton(known, clip.level)) kinematics_.emplace(known);
     for (auto& plan : plans(known, clip.couplings, clip.level)) {
       experts_.emplace_back(std::move(plan), count_);
     }
-    for (std::size_t c = 0; c < columns.size(); ++c) {
+    for (std::size_t c = 0; c < count_; ++c) {
       const NumberLine line(columns[c].line, columns[c].digits);
-      if (c >= count_) {
-        noise_.push_back({line, Noise()});
-        continue;
-      }
       std::vector<std::size_t> own;
       for (std::size_t e = 0; e < experts_.size(); ++e) {
         if (experts_[e].predicts(c)) own.push_back(e);
@@ -118,10 +109,7 @@ class Model {
   // `cut`: whether the motion begins anew, and tells nothing of how it goes on.
   template <class Side>
   void code_frame(Side& side, double* row, bool cut) {
-    for (std::size_t i = 0; i < noise_.size(); ++i) {
-      double& number = row[count_ + i];
-      number = noise_[i].noise.code(side, noise_[i].line, number);
-    }
+    noise_.code(side, row);
     frames_.next();
     if (first_ || side.chance(kNoCut, cut)) return code_first_frame(side, row);
     for (auto& expert : experts_) expert.begin();
@@ -138,7 +126,7 @@ class Model {
 
   template <class Visit>
   void visit_column(std::size_t c, Visit&& each) {
-    if (c >= count_) return noise_[c - count_].noise.visit(each);
+    if (c >= count_) return noise_.visit(c, each);
     channels_[c].spread.visit(each);
     channels_[c].blend.visit(each);
     if (channels_[c].law != nullptr) channels_[c].choice.visit(each);
@@ -159,12 +147,6 @@ class Model {
       const float* next = start.columns[c].data();
       visit_column(c, [&](auto& value) { take(value, *next++); });
     }
-  }
-
-  // Columns of noise come last.
-  static std::size_t predicted(std::span<const Column> columns) {
-    const auto noise = std::ranges::find_if(columns, [](const Column& c) { return c.noise; });
-    return static_cast<std::size_t>(noise - columns.begin());
   }
 
   static std::optional<Turns> turns_of(const Column& column) {
@@ -243,10 +225,10 @@ class Model {
     return level == level ? sane(level) : 0;
   }
 
+  NoiseColumns noise_;
   std::size_t count_;  // columns that are predicted
   std::vector<Expert> experts_;
   std::vector<Channel> channels_;
-  std::vector<NoiseColumn> noise_;
   std::vector<std::unique_ptr<Lawful>> laws_;
   std::optional<Kinematics> kinematics_;
   Frames frames_;

@@ -6,9 +6,12 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
+#include <cstddef>
+#include <span>
+#include <vector>
 
-#include "exact/sides.hpp"
+#include "coding/numbers.hpp"
+#include "exact/codec.hpp"
 #include "exact/start_tables.hpp"
 #include "numbers/line.hpp"
 
@@ -29,6 +32,39 @@ class Noise {
  private:
   BitTree<6> kinds_{kFirstNoiseKinds};
   BitTree<6> lengths_{kFirstNoiseLengths};
+};
+
+// The columns of noise of a clip, which come last.
+class NoiseColumns {
+ public:
+  explicit NoiseColumns(std::span<const Column> columns);
+
+  // How many columns there are before.
+  std::size_t first() const { return first_; }
+  std::size_t size() const { return columns_.size(); }
+
+  template <class Side>
+  void code(Side& side, double* row) {
+    double* number = row + first_;
+    for (auto& [line, noise] : columns_) {
+      *number = noise.code(side, line, *number);
+      ++number;
+    }
+  }
+
+  template <class Visit>
+  void visit(std::size_t column, Visit&& each) {
+    columns_[column - first_].noise.visit(each);
+  }
+
+ private:
+  struct NoiseColumn {
+    NumberLine line;
+    Noise noise;
+  };
+
+  std::size_t first_;
+  std::vector<NoiseColumn> columns_;
 };
 
 }  // namespace mocapress::exact

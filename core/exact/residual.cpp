@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "coding/sides.hpp"
 #include "exact/start_tables.hpp"
 
 namespace mocapress::exact {
@@ -67,12 +68,10 @@ class Coding {
   // A magnitude of at most 62 bits: its length by a tree, the rest raw. Length 63: not on the line.
   std::uint64_t magnitude(BitTree<6>& tree, std::uint64_t value, bool on_line) {
     const auto bits = static_cast<unsigned>(std::bit_width(value));
-    const unsigned length = side_.symbol(tree, on_line && bits < kOffLine ? bits : kOffLine);
+    const unsigned length = tree.code(side_, on_line && bits < kOffLine ? bits : kOffLine);
     off_line_ = length == kOffLine;
     if (off_line_) return 0;
-    if (length < 2) return length;
-    const std::uint64_t top = std::uint64_t{1} << (length - 1);
-    return top | side_.raw(static_cast<int>(length) - 1, value & (top - 1));
+    return code_below_leading(side_, static_cast<int>(length), value);
   }
 
   double finish(std::int64_t place, double number) {
@@ -127,9 +126,8 @@ class Coding {
         const double share = in_this / (in_this + in_smaller);
         smaller = side_.chance(static_cast<std::uint32_t>(64 + share * 65408), smaller);
       } else {
-        smaller = side_.bit(
-            models_.smaller[static_cast<std::size_t>(decade - NumberLine::kLowestExponent)],
-            smaller);
+        smaller =
+            side_.bit(models_.smaller[static_cast<std::size_t>(decade - kLowestPower)], smaller);
       }
       (smaller ? to : from) = start;
     }
@@ -229,9 +227,11 @@ double Residual::code_first(Side& side, const NumberLine& line, double number) {
   return coding.finish(negative ? -1 - coded : coded, number);
 }
 
-template double Residual::code(Writing&, std::size_t, const NumberLine&, double, double, double);
-template double Residual::code(Reading&, std::size_t, const NumberLine&, double, double, double);
-template double Residual::code_first(Writing&, const NumberLine&, double);
-template double Residual::code_first(Reading&, const NumberLine&, double);
+template double Residual::code(RangeWriting&, std::size_t, const NumberLine&, double, double,
+                               double);
+template double Residual::code(RangeReading&, std::size_t, const NumberLine&, double, double,
+                               double);
+template double Residual::code_first(RangeWriting&, const NumberLine&, double);
+template double Residual::code_first(RangeReading&, const NumberLine&, double);
 
 }  // namespace mocapress::exact

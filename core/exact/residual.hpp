@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "exact/sides.hpp"
+#include "coding/numbers.hpp"
 #include "numbers/line.hpp"
 
 namespace mocapress::exact {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "coding/range_coder.hpp"
+#include "coding/bit.hpp"
 
 namespace mocapress::exact {
 

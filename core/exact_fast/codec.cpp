@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "coding/sides.hpp"
 #include "exact/noise.hpp"
 #include "exact_fast/neighbours.hpp"
 #include "exact_fast/ruler.hpp"
-#include "exact_fast/sides.hpp"
 #include "exact_fast/symbols.hpp"
 
 namespace mocapress::exact {
@@ -74,32 +74,22 @@ double sane(double level) {
   return level > -kLargest && level < kLargest ? level : level >= kLargest ? kLargest : -kLargest;
 }
 
-struct NoiseColumn {
-  NumberLine line;
-  Noise noise;
-};
-
 template <int kOwn, int kOthers>
 class FastModel {
  public:
   FastModel(std::span<const Column> columns, double fading)
-      : count_(predicted(columns)),
+      : noise_(columns),
+        count_(noise_.first()),
         neighbours_(count_, {kOwn, kOthers, fading}),
         errors_(count_),
         last_(count_),
         next_(count_) {
     for (std::size_t c = 0; c < count_; ++c) rulers_.emplace_back(columns[c]);
-    for (const Column& column : columns.subspan(count_)) {
-      noise_.push_back({NumberLine(column.line, column.digits), Noise()});
-    }
   }
 
   template <class Side>
   void code_frame(Side& side, double* row) {
-    for (std::size_t i = 0; i < noise_.size(); ++i) {
-      double& number = row[count_ + i];
-      number = noise_[i].noise.code(side, noise_[i].line, number);
-    }
+    noise_.code(side, row);
     for (std::size_t c = 0; c < count_; ++c) row[c] = code_number(side, c, row[c]);
     if (!first_) neighbours_.learn();
     errors_.next_frame();
@@ -107,12 +97,6 @@ class FastModel {
   }
 
  private:
-  // Columns of noise come last.
-  static std::size_t predicted(std::span<const Column> columns) {
-    const auto noise = std::ranges::find_if(columns, [](const Column& c) { return c.noise; });
-    return static_cast<std::size_t>(noise - columns.begin());
-  }
-
   template <class Side>
   double code_number(Side& side, std::size_t c, double number) {
     Ruler& ruler = rulers_[c];
@@ -158,12 +142,12 @@ class FastModel {
     last_[c] = level;
   }
 
+  NoiseColumns noise_;
   std::size_t count_;  // columns that are predicted
   Neighbours neighbours_;
   Errors errors_;
   Activity activity_;
   std::vector<Ruler> rulers_;
-  std::vector<NoiseColumn> noise_;
   std::vector<double> last_;  // levels
   std::vector<double> next_;  // where the last two levels lead
   bool first_ = true;
@@ -181,7 +165,7 @@ void with_model(const Clip& clip, Action action) {
 }  // namespace
 
 Bytes encode_fast(const double* values, std::size_t frames, const Clip& clip, Start* learned) {
-  FastWriting side;
+  RansWriting side;
   const std::size_t count = clip.columns.size();
   std::vector<double> row(count);
   with_model(clip, [&](auto model) {
@@ -195,7 +179,7 @@ Bytes encode_fast(const double* values, std::size_t frames, const Clip& clip, St
 }
 
 void decode_fast(ByteView payload, double* values, std::size_t frames, const Clip& clip) {
-  FastReading side(payload);
+  RansReading side(payload);
   with_model(clip, [&](auto model) {
     for (std::size_t f = 0; f < frames; ++f) {
       if (f % kSoundEvery == 0 && !side.sound()) break;

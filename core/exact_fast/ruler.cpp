@@ -7,20 +7,9 @@
 namespace mocapress::exact {
 namespace {
 
-constexpr int kMostExact = 22;       // 10^22 is the last power of ten that a double holds exactly
 constexpr int kMostBinary = 900;     // so that steps are normal numbers
 constexpr int kMostDecadesUp = 9;    // above the one taken
 constexpr double kFarthest = 1e300;  // levels
-
-double binary_power(int exponent) {
-  return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
-}
-
-std::int64_t integer_power(int base, int exponent) {
-  std::int64_t power = 1;
-  for (int i = 0; i < exponent; ++i) power *= base;
-  return power;
-}
 
 }  // namespace
 
@@ -30,7 +19,7 @@ Ruler::Ruler(const Column& column)
       unit_(std::ldexp(1.0, column.exponent)) {
   switch (kind_) {
     case Line::decimals:
-      power_ = NumberLine::power_of_ten(column.digits);
+      power_ = power_of_ten(column.digits);
       step_ = unit_ / power_;
       low_ = -1;
       high_ = std::numeric_limits<double>::infinity();
@@ -41,12 +30,12 @@ Ruler::Ruler(const Column& column)
       break;
     case Line::significant:
       digits_ = column.digits;
-      lowest_ = NumberLine::kLowestExponent;
+      lowest_ = kLowestPower;
       origin_ = 1;
       first_ = integer_power(10, digits_ - 1);
       per_decade_ = 9 * first_;
-      least_ = digits_ - 1 - kMostExact;
-      most_ = digits_ - 1 + kMostExact;
+      least_ = digits_ - 1 - kMostExactPower;
+      most_ = digits_ - 1 + kMostExactPower;
       break;
     default:
       digits_ = kind_ == Line::float64 ? 53 : 24;
@@ -70,7 +59,7 @@ void Ruler::move(double magnitude) {
     step_ = line_.step(number) * unit_;
   } else if (kind_ != Line::decimals) {
     if (base_ == 10) {
-      decade_ = number >= 1e-300 ? NumberLine::decimal_exponent(number) : least_;
+      decade_ = number >= 1e-300 ? decimal_exponent(number) : least_;
     } else {
       const auto bits = std::bit_cast<std::uint64_t>(number >= 1e-300 ? number : 1e-300);
       decade_ = static_cast<int>(bits >> 52) - 1023;
@@ -78,7 +67,7 @@ void Ruler::move(double magnitude) {
     decade_ = std::clamp(decade_, least_, most_);
     const int last = decade_ - digits_ + 1;  // the step is base^last
     const auto power = [this](int exponent) {
-      return base_ == 10 ? NumberLine::power_of_ten(exponent) : binary_power(exponent);
+      return base_ == 10 ? power_of_ten(exponent) : power_of_two(exponent);
     };
     low_ = decade_ == least_ ? -1 : power(decade_) * unit_;
     high_ = decade_ == most_ ? std::numeric_limits<double>::infinity() : power(decade_ + 1) * unit_;
@@ -98,10 +87,7 @@ std::int64_t Ruler::near_place(double predicted) const {
 
 Ruler::Place Ruler::place(double number) const {
   const std::int64_t signed_place = line_.place(number);
-  if (std::bit_cast<std::uint64_t>(line_.number(signed_place)) !=
-      std::bit_cast<std::uint64_t>(number)) {
-    return {0, 0, false, false};
-  }
+  if (!line_.holds(number, signed_place)) return {0, 0, false, false};
   const bool negative = signed_place < 0;
   const std::int64_t place = negative ? ~signed_place : signed_place;
   std::int64_t marks = place;
@@ -156,8 +142,8 @@ double Ruler::finish_rest(Side& side, const Place& place, double& level) {
     for (std::int64_t part = below; part > 1;) {
       const std::int64_t unit = std::min<std::int64_t>(part, base_ == 10 ? 1000 : 1 << 10);
       part /= unit;
-      const auto digit =
-          side.uniform(static_cast<std::uint32_t>(unit), static_cast<std::uint32_t>(left / part));
+      const auto digit = static_cast<std::int64_t>(
+          side.uniform(static_cast<std::uint64_t>(unit), static_cast<std::uint64_t>(left / part)));
       left %= part;
       rest += digit * part;
     }
@@ -170,7 +156,7 @@ double Ruler::finish_rest(Side& side, const Place& place, double& level) {
   return number;
 }
 
-template double Ruler::finish_rest(FastWriting&, const Place&, double&);
-template double Ruler::finish_rest(FastReading&, const Place&, double&);
+template double Ruler::finish_rest(RansWriting&, const Place&, double&);
+template double Ruler::finish_rest(RansReading&, const Place&, double&);
 
 }  // namespace mocapress::exact

@@ -10,8 +10,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "coding/sides.hpp"
 #include "exact/codec.hpp"
-#include "exact_fast/sides.hpp"
 #include "exact_fast/symbols.hpp"
 #include "numbers/line.hpp"
 

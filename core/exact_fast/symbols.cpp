@@ -94,7 +94,7 @@ std::array<Table, Distances::kClasses> make_tables() {
 
 const std::array<Table, Distances::kClasses> kTables = make_tables();
 
-unsigned read(FastReading& side, const Table& table) {
+unsigned read(RansReading& side, const Table& table) {
   const std::uint32_t at = side.peek();
   unsigned symbol = table.symbol[at >> 6];
   while (symbol + 1 < Distances::kSymbols && at >= table.start[symbol + 1]) ++symbol;
@@ -137,7 +137,7 @@ std::int64_t Distances::code(Side& side, int scale, std::int64_t distance, bool&
   return static_cast<std::int64_t>(symbol % 2 == 0 ? away : ~away);
 }
 
-template std::int64_t Distances::code(FastWriting&, int, std::int64_t, bool&);
-template std::int64_t Distances::code(FastReading&, int, std::int64_t, bool&);
+template std::int64_t Distances::code(RansWriting&, int, std::int64_t, bool&);
+template std::int64_t Distances::code(RansReading&, int, std::int64_t, bool&);
 
 }  // namespace mocapress::exact

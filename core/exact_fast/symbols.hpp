@@ -9,7 +9,7 @@
 #include <array>
 #include <cstdint>
 
-#include "exact_fast/sides.hpp"
+#include "coding/sides.hpp"
 
 namespace mocapress::exact {
 

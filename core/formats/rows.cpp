@@ -10,8 +10,6 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 // Whether a line that begins so is none of the frame before: it is the next frame's number, or the
 // NULs or the Ctrl-Z that some programs leave behind a text.
 bool may_follow_row(char c) { return is_digit(c) || c == '-' || c == '\0' || c == '\x1a'; }

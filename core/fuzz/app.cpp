@@ -45,8 +45,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     column.parent =
         static_cast<std::int32_t>(input.below(static_cast<unsigned>(columns.size()) + 1)) - 1;
     column.precision = static_cast<app::Precision>(input.below(3));
-    column.grid = static_cast<mocapress::Grid>(input.below(4));
-    column.digits = static_cast<std::int32_t>(input.below(30)) - 2;
+    const auto line = static_cast<int>(input.below(7));
+    column.digits = static_cast<int>(input.below(30)) - 2;
+    const bool exists = mocapress::line_exists(line, column.digits);
+    column.line = exists ? static_cast<mocapress::Line>(line) : mocapress::Line::float64;
   }
   std::vector<double> decoded(frames * columns.size());
   if (!round_trip) {

@@ -1,7 +1,7 @@
 // What a fuzz target makes of its input.
 #pragma once
 
-#include "coding/range_coder.hpp"
+#include "coding/bit.hpp"
 
 namespace mocapress::fuzz {
 

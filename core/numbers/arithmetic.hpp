@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstdint>
 
-namespace mocapress::exact {
+namespace mocapress {
 
 inline constexpr double kLn2 = 0.6931471805599453;
+inline constexpr double kRadiansPerDegree = 0.017453292519943295;
+inline constexpr double kDegreesPerRadian = 57.29577951308232;
 
 // Natural logarithm of a normal, positive number.
 inline double natural_log(double value) {
@@ -110,4 +112,4 @@ inline double arc_sine(double sine) {
   return arc_tangent(cut, std::sqrt((1 - cut) * (1 + cut)));
 }
 
-}  // namespace mocapress::exact
+}  // namespace mocapress

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cstdint>
 
+#include "numbers/powers.hpp"
+
 namespace mocapress {
 
 // The kinds of mocapress.motion.NumberFormat, of which SCIENTIFIC is `significant` with one digit
@@ -38,6 +40,10 @@ class NumberLine {
   // the same on every machine: a coder needs no more.
   std::int64_t near(double number) const;
 
+  // The number of the line nearest to one that rounding has moved away. Keeps -0, infinities, NaN
+  // and what is further out than the line goes.
+  double nearest(double number) const;
+
   // The distance between the numbers near `value`.
   double step(double value) const;
 
@@ -47,14 +53,8 @@ class NumberLine {
   std::int64_t decade(int exponent) const;
   // The decade of a place > 0.
   int decade_of(std::int64_t place) const {
-    return static_cast<int>((place - 1) / per_decade_) + kLowestExponent;
+    return static_cast<int>((place - 1) / per_decade_) + kLowestPower;
   }
-  // floor(log10(magnitude)), within what the line can hold.
-  static int decimal_exponent(double magnitude);
-  static double power_of_ten(int exponent);
-
-  static constexpr int kLowestExponent = -307;
-  static constexpr int kHighestExponent = 308;
 
  private:
   std::int64_t magnitude_place(double magnitude) const;

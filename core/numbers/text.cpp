@@ -1,27 +1,25 @@
 #include "numbers/text.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 
+#include "numbers/powers.hpp"
+
 namespace mocapress {
 namespace {
 
-// Powers of ten that a double holds exactly.
-constexpr double power10[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                              1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                              1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-constexpr int exact_power = 22;
-
-constexpr uint64_t integer_power10(unsigned exponent) {
-  uint64_t power = 1;
-  while (exponent-- > 0) power *= 10;
-  return power;
+// 10^count, for count <= 19.
+uint64_t whole_power(unsigned count) {
+  static constexpr auto kPowers = [] {
+    std::array<uint64_t, 20> powers{1};
+    for (size_t i = 1; i < powers.size(); ++i) powers[i] = 10 * powers[i - 1];
+    return powers;
+  }();
+  return kPowers[count];
 }
-
-bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
 
 // Value of a text of digits with at most one exponent that the fast path cannot give.
 const char* parse_slow(const char* text, const char* end, bool negative, int64_t exponent10,
@@ -116,20 +114,12 @@ Decimal read_scientific(const char* text, const char* end) {
 // Significant digits of a positive value, rounded to `count` of them.
 Decimal round_significant(double value, unsigned count) {
   if (count <= 15 && value >= 1e-7 && value < 1e22) {
-    // floor(log10(value)) from the binary exponent, then corrected by one comparison.
-    const auto exponent2 = static_cast<int>(std::bit_cast<uint64_t>(value) >> 52) - 1023;
-    int exponent = (exponent2 * 1233) >> 12;
-    const double bound = exponent >= 0 ? power10[exponent] : 1.0 / power10[-exponent];
-    if (value < bound)
-      --exponent;
-    else if (exponent < exact_power && (exponent + 1 >= 0 ? value >= power10[exponent + 1]
-                                                          : value * power10[-exponent - 1] >= 1.0))
-      ++exponent;
+    int exponent = decimal_exponent(value);
     const int shift = static_cast<int>(count) - 1 - exponent;
-    const double scaled = shift >= 0 ? value * power10[shift] : value / power10[-shift];
+    const double scaled = shift >= 0 ? value * power_of_ten(shift) : value / power_of_ten(-shift);
     auto digits = static_cast<uint64_t>(std::llrint(scaled));
-    if (digits >= integer_power10(count)) digits /= 10, ++exponent;
-    if (digits >= integer_power10(count - 1)) return strip_zeros(digits, count, exponent);
+    if (digits >= whole_power(count)) digits /= 10, ++exponent;
+    if (digits >= whole_power(count - 1)) return strip_zeros(digits, count, exponent);
   }
   char text[64];
   const auto result = std::to_chars(text, text + sizeof text, value, std::chars_format::scientific,
@@ -141,14 +131,15 @@ Decimal round_significant(double value, unsigned count) {
 char* print_fixed(char* out, double value, const NumberFormat& format) {
   const unsigned decimals = format.digits;
   char* const start = out;
-  if (decimals <= 15 && value * power10[decimals] < 1e15) {
-    const auto scaled = static_cast<uint64_t>(std::llrint(value * power10[decimals]));
-    const uint64_t whole = scaled / integer_power10(decimals);
+  if (decimals <= 15 && value * power_of_ten(static_cast<int>(decimals)) < 1e15) {
+    const auto scaled =
+        static_cast<uint64_t>(std::llrint(value * power_of_ten(static_cast<int>(decimals))));
+    const uint64_t whole = scaled / whole_power(decimals);
     if (whole > 0 || !format.bare_point || decimals == 0)
       out = print_digits(out, whole, count_digits(whole));
     if (decimals > 0) {
       *out++ = '.';
-      out = print_digits(out, scaled % integer_power10(decimals), decimals);
+      out = print_digits(out, scaled % whole_power(decimals), decimals);
     }
   } else {
     const auto result = std::to_chars(out, out + max_number_text - 1, value,
@@ -220,11 +211,12 @@ const char* parse_number(const char* text, const char* end, double& value, Numbe
   }
   shape.decimals = static_cast<uint8_t>(std::min<ptrdiff_t>(decimals, 255));
   const int64_t shift = exponent - decimals;
-  if (whole + decimals <= 19 && digits < (uint64_t{1} << 53) && shift >= -exact_power &&
-      shift <= exact_power) {
+  if (whole + decimals <= 19 && digits < (uint64_t{1} << 53) && shift >= -kMostExactPower &&
+      shift <= kMostExactPower) {
     shape.significant = digits == 0 ? 0 : static_cast<uint8_t>(count_digits(digits));
     value = static_cast<double>(digits);
-    value = shift < 0 ? value / power10[-shift] : value * power10[shift];
+    const double power = power_of_ten(static_cast<int>(shift < 0 ? -shift : shift));
+    value = shift < 0 ? value / power : value * power;
     if (negative) value = -value;
     return p;
   }

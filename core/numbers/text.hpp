@@ -39,6 +39,8 @@ struct NumberShape {
   bool upper = false;
 };
 
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 // Parses a finite decimal number at `text`; gives the end of it, or nullptr where there is none or
 // where it exceeds the range of a double. The value is the nearest double, as strtod gives it.
 const char* parse_number(const char* text, const char* end, double& value, NumberShape& shape);

@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "app/codec.hpp"
+#include "coding/numbers.hpp"
+#include "coding/sides.hpp"
 #include "python/bindings.hpp"
 
 namespace mocapress {
@@ -16,7 +18,7 @@ using Output = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Integers = nb::ndarray<const std::int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using IntegerOutput = nb::ndarray<std::int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Table = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-// (C, 4): parent, precision, grid, digits
+// (C, 4): parent, precision, line, digits
 using Plan = nb::ndarray<const std::int32_t, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
 
 std::vector<app::Column> columns_of(const Plan& plan, std::size_t count) {
@@ -24,7 +26,8 @@ std::vector<app::Column> columns_of(const Plan& plan, std::size_t count) {
   std::vector<app::Column> columns(count);
   for (std::size_t c = 0; c < count; ++c) {
     const std::int32_t* row = plan.data() + 4 * c;
-    columns[c] = {row[0], static_cast<app::Precision>(row[1]), static_cast<Grid>(row[2]), row[3]};
+    const Line line = line_exists(row[2], row[3]) ? static_cast<Line>(row[2]) : Line::float64;
+    columns[c] = {row[0], static_cast<app::Precision>(row[1]), line, row[3]};
   }
   return columns;
 }
@@ -92,9 +95,10 @@ double prediction_error(const Matrix& values, const Plan& plan, const Table& alp
 void snap_columns(const Output& values, const Plan& plan) {
   const auto columns = columns_of(plan, values.shape(1));
   nb::gil_scoped_release unlocked;
+  std::vector<NumberLine> lines;
+  for (const auto& column : columns) lines.emplace_back(column.line, column.digits);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto& column = columns[i % columns.size()];
-    values.data()[i] = snap(values.data()[i], column.grid, column.digits);
+    values.data()[i] = lines[i % lines.size()].nearest(values.data()[i]);
   }
 }
 
@@ -102,24 +106,24 @@ nb::bytes encode_differences(const Integers& differences) {
   Bytes coded;
   {
     nb::gil_scoped_release unlocked;
-    Encoder encoder;
+    RangeWriting side;
     Difference<7> difference;
     for (std::size_t i = 0; i < differences.size(); ++i) {
-      difference.encode(encoder, differences.data()[i]);
+      difference.code(side, differences.data()[i]);
     }
-    encoder.finish(coded);
+    coded = side.finish();
   }
   return to_python(coded);
 }
 
 void decode_differences(const nb::bytes& coded, const IntegerOutput& differences) {
-  Decoder decoder(view(coded));
+  RangeReading side(view(coded));
   nb::gil_scoped_release unlocked;
   Difference<7> difference;
-  for (std::size_t i = 0; i < differences.size() && decoder.sound(); ++i) {
-    differences.data()[i] = difference.decode(decoder);
+  for (std::size_t i = 0; i < differences.size() && side.sound(); ++i) {
+    differences.data()[i] = difference.code(side, 0);
   }
-  if (!decoder.exhausted()) throw std::invalid_argument("the differences are cut off or too long");
+  if (!side.exhausted()) throw std::invalid_argument("the differences are cut off or too long");
 }
 
 }  // namespace

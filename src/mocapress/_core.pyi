@@ -40,7 +40,7 @@ def print_rows(
     most_bytes: int,
 ) -> bytes: ...
 
-# A plan is (C, 4) int32: parent column or -1, precision, grid, digits; see core/app/codec.hpp.
+# A plan is (C, 4) int32: parent column or -1, precision, line, digits; see core/app/codec.hpp.
 
 def app_precisions(values: NDArray[np.float64], plan: NDArray[np.int32]) -> list[int]: ...
 def app_encode(

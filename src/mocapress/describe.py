@@ -126,7 +126,7 @@ def describe_mcz(
         facts["bits_per_sample"] = 8 * mcz.size / (frames * len(main.columns))
     measure = getattr(opened.codec(), "measure", None)
     if original is not None and measure is not None and facts["model_found"] is not False:
-        clip = columns.with_values(opened.rows().values)
+        clip = columns.with_frames(opened.rows().values, columns.frame_time)
         facts |= measure(clip, Encoded(main.header, opened.coded()), original.size)
     return facts
 

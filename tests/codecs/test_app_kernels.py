@@ -1,4 +1,4 @@
-"""What APP is built on: decimal grids, and differences coded in context."""
+"""What APP is built on: lines of numbers, and differences coded in context."""
 
 import numpy as np
 import pytest
@@ -8,13 +8,13 @@ from hypothesis.extra.numpy import arrays
 
 from mocapress import _core
 
-SIGNIFICANT, DECIMALS, SHORTEST32 = 1, 2, 3
+SIGNIFICANT, DECIMALS, SHORTEST32 = 2, 3, 4
 singles = st.floats(allow_nan=False, allow_infinity=False, width=32)
 
 
-def snap(value: float, grid: int, digits: int) -> float:
+def snap(value: float, line: int, digits: int) -> float:
     values = np.array([[value]])
-    _core.snap(values, np.array([[-1, 0, grid, digits]], dtype=np.int32))
+    _core.snap(values, np.array([[-1, 0, line, digits]], dtype=np.int32))
     return float(values[0, 0])
 
 
@@ -37,19 +37,19 @@ def test_snap_gives_the_shortest_decimal_of_a_float(value: float) -> None:
     assert snap(value, SHORTEST32, 0) == float(str(np.float32(value)))
 
 
-@given(st.floats(), st.integers(0, 3), st.integers(-5, 400))
-def test_snap_settles(value: float, grid: int, digits: int) -> None:
-    if grid == SHORTEST32 and abs(value) > 3e38:
+@given(st.floats(), st.integers(0, 4), st.integers(-5, 400))
+def test_snap_settles(value: float, line: int, digits: int) -> None:
+    if line == SHORTEST32 and abs(value) > 3e38:
         return
-    once = snap(value, grid, digits)
-    assert np.float64(snap(once, grid, digits)).tobytes() == np.float64(once).tobytes()
+    once = snap(value, line, digits)
+    assert np.float64(snap(once, line, digits)).tobytes() == np.float64(once).tobytes()
     assert np.signbit(once) == np.signbit(value)
 
 
-@pytest.mark.parametrize("grid", [0, SIGNIFICANT, DECIMALS, SHORTEST32])
+@pytest.mark.parametrize("line", [0, SIGNIFICANT, DECIMALS, SHORTEST32])
 @pytest.mark.parametrize("value", [-0.0, np.inf, -np.inf])
-def test_snap_keeps_what_has_no_digits(value: float, grid: int) -> None:
-    assert np.float64(snap(value, grid, 3)).tobytes() == np.float64(value).tobytes()
+def test_snap_keeps_what_has_no_digits(value: float, line: int) -> None:
+    assert np.float64(snap(value, line, 3)).tobytes() == np.float64(value).tobytes()
 
 
 @given(arrays(np.int64, st.integers(0, 50)))

@@ -94,12 +94,12 @@ def load_source(
         raise ParameterError("errors", expected="raise or skip", found=repr(errors))
     if source.kind == DIFFMA_JSON:
         clip = diffma_json.json_to_clip(source.data)
-        return clip if frames is None else clip.with_values(clip.values[frames])
+        return clip if frames is None else clip[frames]
     opened = Opened(source, models, salvage=errors == _SKIP)
     original = opened.mcz.original
     if not opened.streams:
         clip = _of_contents(opened, asf_path, strict=strict)
-        return clip if frames is None else clip.with_values(clip.values[frames])
+        return clip if frames is None else clip[frames]
     if original is not None:
         source.accept(original.problems, strict=strict)
     clip = _clip(opened, frames, stream, asf_path)
@@ -139,7 +139,9 @@ def _clip(
         if rows:
             first, last = min(rows[0], rows[-1]), max(rows[0], rows[-1]) + 1
             values = opened.rows(index, first, last).values[:: rows.step]
-        streams[head.name] = Stream(values, head.columns, head.frame_time)
+        # Every second frame lasts twice as long.
+        time = None if head.frame_time is None else head.frame_time * abs(rows.step)
+        streams[head.name] = Stream(values, head.columns, time)
     for index in set(range(len(opened.streams))) - set(known):
         _unknown(opened, opened.streams[index])
     original, notes = opened.mcz.original, dict(opened.mcz.notes)

@@ -8,6 +8,7 @@ from mocapress.container import diffma_json
 from mocapress.errors import UnsupportedError
 from mocapress.formats import Format
 from mocapress.motion import Clip
+from mocapress.motion.convert import with_rate
 from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, Named, Source
 from mocapress.source import read as read_motion
 from mocapress.storage import write_whole
@@ -51,7 +52,14 @@ def read_source(source: Source, asf_path: str | Path | None = None, *, strict: b
     return read_motion(source, asf_path, strict=strict)
 
 
-def write(clip: Clip, path: str | Path, *, to: str | None = None, force: bool = False) -> None:
+def write(
+    clip: Clip,
+    path: str | Path,
+    *,
+    to: str | None = None,
+    fps: float | None = None,
+    force: bool = False,
+) -> None:
     """Write a clip to a motion file, or as DiffMA JSON.
 
     The clip is converted to what the format can hold. What belongs beside the file is written,
@@ -65,11 +73,16 @@ def write(clip: Clip, path: str | Path, *, to: str | None = None, force: bool = 
         Its ending names the format.
     to
         Id of the format, whatever the ending.
+    fps
+        Frames per second, instead of those of the clip. A BVH has to state its frame time: where
+        neither the clip nor ``fps`` says it, 120 are assumed, with a ``MotionWarning``.
     force
-        Whether to overwrite.
+        Whether to replace existing files.
 
     Raises
     ------
+    ParameterError
+        When ``fps`` is no number above 0.
     ExistsError
         When a file exists and ``force`` is not given.
     UnsupportedError
@@ -78,13 +91,14 @@ def write(clip: Clip, path: str | Path, *, to: str | None = None, force: bool = 
     """
     path = Path(path)
     if to is None and path.name.lower().endswith(JSON_SUFFIXES):
+        clip = with_rate(clip, fps)
         write_whole(path, diffma_json.named(path.name, diffma_json.to_json(clip)), force=force)
         return
     of = formats.by_id(to) if to else formats.by_name(path.name)
     if of is None:
         known = formats.names(formats.writable())
         raise UnsupportedError("no format for clips", expected=known, found=repr(path.suffix))
-    (_, data), *beside = printed(clip, of).items()
+    (_, data), *beside = printed(with_rate(clip, fps, needed=of.timed), of).items()
     for suffix, more in beside:
         write_whole(path.with_suffix(suffix), more, force=force)
     write_whole(path, data, force=force)

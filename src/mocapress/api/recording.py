@@ -120,7 +120,7 @@ class Recording:
             self._held = len(self._waiting[0])
 
     def _write_chunk(self, rows: NDArray[np.float64]) -> None:
-        clip = self._clip.with_values(rows)
+        clip = self._clip.with_frames(rows, self._clip.frame_time)
         encoded = self._codec.encode(clip)
         if self._codec.lossless:
             back = decoded(self._codec, encoded.header, encoded.chunks, self._head, None, len(rows))

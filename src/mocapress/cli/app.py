@@ -208,7 +208,9 @@ def convert(
     models: Models = None,
     fps: Annotated[
         float | None,
-        typer.Option("--fps", help="Frames per second of an AMC, which does not say.", min=1e-3),
+        typer.Option(
+            "--fps", help="Frames per second, instead of those that the file states.", min=1e-3
+        ),
     ] = None,
     lenient: Lenient = False,
     jobs: Jobs = 1,

@@ -104,7 +104,7 @@ def run(
         done = [outcome for outcome in outcomes if not outcome.error]
         for outcome in outcomes:
             for warning in outcome.warnings:
-                typer.echo(f"mocapress: warning: {warning}", err=True)
+                typer.echo(f"mocapress: warning: {_of_file(outcome, str(warning))}", err=True)
         for outcome in done:
             if outcome.result.get("warning"):
                 typer.echo(f"mocapress: warning: {_with_file(outcome)}", err=True)
@@ -154,7 +154,11 @@ def _work_all(
 
 
 def _with_file(outcome: Outcome) -> str:
-    text, name = str(outcome.result["warning"]), str(outcome.source)
+    return _of_file(outcome, str(outcome.result["warning"]))
+
+
+def _of_file(outcome: Outcome, text: str) -> str:
+    name = str(outcome.source)
     return text if text.startswith(name) else f"{name}: {text}"
 
 

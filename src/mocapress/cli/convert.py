@@ -13,7 +13,7 @@ from mocapress.errors import UnsupportedError
 from mocapress.formats import Format, by_name, readable, suffixes, writable
 from mocapress.models import Place
 from mocapress.motion import Clip
-from mocapress.motion.convert import DEFAULT_FPS, frame_time_of
+from mocapress.motion.convert import with_rate
 from mocapress.source import MCZ, Source
 
 
@@ -45,17 +45,12 @@ def convert_files(
         place = target(job, output, rename, many=len(files) > 1)
         source = opened(job)
         clip = _read(source, asf, given, strict=strict)
-        warning = None
-        if fps is not None:
-            clip = clip.with_frame_time(frame_time_of(fps))
-        elif clip.frame_time is None and target_format.timed:
-            warning = f"the file does not say its frame rate; taken as {DEFAULT_FPS:g}"
+        clip = with_rate(clip, fps, needed=target_format.timed)
         result = {
             "output": str(place),
             "frames": clip.frames,
             "skeleton": clip.metadata.get("skeleton"),
             "skeleton_found": clip.metadata.get("skeleton_found"),
-            "warning": warning,
         }
         if place == STREAM:
             sys.stdout.buffer.write(next(iter(api.printed(clip, target_format).values())))

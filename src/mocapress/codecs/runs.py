@@ -1,6 +1,6 @@
 """Lists of numbers, one for each column, in which equal neighbours stand together.
 
-A value and how many columns in a row have it, until all columns are told.
+Each run is a value and the number of consecutive columns that have it; runs cover all columns.
 """
 
 from collections.abc import Sequence

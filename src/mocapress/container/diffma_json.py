@@ -77,7 +77,7 @@ def to_json(
     Raises
     ------
     FormatError
-        When the source is no motion file, or a broken one.
+        When the source is not a motion file, or is broken.
     ParameterError
         When the codec is another, or has no such parameter.
 
@@ -102,7 +102,7 @@ def file_to_json(source: Source, codec: DiffMA, *, asf_path: str | Path | None =
     Raises
     ------
     FormatError
-        When it is no motion file, or a broken one.
+        When it is not a motion file, or is broken.
 
     """
     clip, layout, problems = source.split(asf_path)
@@ -117,7 +117,7 @@ def clip_to_json(clip: Clip, codec: DiffMA, *, layout: bytes = b"") -> bytes:
     Raises
     ------
     UnsupportedError
-        When a value is no finite number, which JSON cannot hold.
+        When a value is not finite, which JSON cannot express.
     VerificationError
         When the codec fails, or what was decoded is not what was encoded.
 

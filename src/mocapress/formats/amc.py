@@ -1,6 +1,8 @@
 """AMC: the motion of an Acclaim skeleton, one line per bone and frame."""
 
 import re
+from decimal import Decimal, InvalidOperation
+from fractions import Fraction
 from functools import partial
 
 import numpy as np
@@ -21,11 +23,13 @@ from mocapress.formats.rows import (
     unreadable,
 )
 from mocapress.motion import Clip, Skeleton
+from mocapress.motion.clip import FrameTime, short_decimal
 from mocapress.motion.columns import bone_columns
 from mocapress.motion.convert import to_amc_clip
 
 # A line that holds a frame's number and nothing else.
 _COUNTER = re.compile(rb"^[ \t]*-?\d+[ \t]*\r?$", re.MULTILINE)
+_RATE = re.compile(rb"^[ \t]*:samples-per-second[ \t]+(\S+)", re.MULTILINE | re.IGNORECASE)
 _TOKEN = re.compile(rb"\S+")
 _KEYWORD = re.compile(rb"^\s*:(fully-specified|degrees|radians)\b", re.MULTILINE | re.IGNORECASE)
 
@@ -46,7 +50,7 @@ def fit(clip: Clip) -> Clip:
 def write(clip: Clip) -> dict[str, bytes]:
     """Print a clip, and its skeleton as the ASF beside it."""
     radians = any(column.unit == "rad" for column in clip.columns)
-    header = b":FULLY-SPECIFIED\n" + (b":RADIANS\n" if radians else b":DEGREES\n")
+    header = format_header(clip.frame_time, "rad" if radians else "deg") + b"\n"
     literals = [b""]
     for i, column in enumerate(clip.columns):
         fresh = i == 0 or column.joint != clip.columns[i - 1].joint
@@ -117,7 +121,30 @@ def clip_of(
     radians = re.search(rb"^\s*:radians", header, re.MULTILINE | re.IGNORECASE)
     degrees = re.search(rb"^\s*:degrees", header, re.MULTILINE | re.IGNORECASE)
     angle_unit = "rad" if radians else "deg" if degrees else None
-    return Clip.of(body_values, bone_columns(skeleton, bones, angle_unit), None, skeleton, name)
+    columns = bone_columns(skeleton, bones, angle_unit)
+    return Clip.of(body_values, columns, frame_time_of(header), skeleton, name)
+
+
+def frame_time_of(header: bytes) -> Fraction | None:
+    """Give the seconds per frame that a header states, if it does and they are a time."""
+    stated = _RATE.search(header)
+    if stated is None:
+        return None
+    try:
+        rate = Decimal(stated[1].decode("latin-1"))
+    except InvalidOperation:
+        return None
+    return (
+        1 / Fraction(rate) if rate.is_finite() and abs(rate.adjusted()) < 18 and rate > 0 else None
+    )
+
+
+def format_header(frame_time: FrameTime, angle_unit: str) -> bytes:
+    """Print what stands before the frames."""
+    lines = [":FULLY-SPECIFIED", ":RADIANS" if angle_unit == "rad" else ":DEGREES"]
+    if frame_time:
+        lines.append(f":SAMPLES-PER-SECOND {short_decimal(1 / Fraction(frame_time)):f}")
+    return "\n".join(lines).encode()
 
 
 def slots_of_row(text: bytes, shape: RowShape) -> list[Slot]:

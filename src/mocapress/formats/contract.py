@@ -62,6 +62,6 @@ class Format:
     belongs beside it. Numbers are printed in their columns' formats, else with the fewest digits.
     """
     timed: bool = True
-    """Whether files state their frame time."""
+    """Whether files have to state their frame time."""
     companion: str | None = None
     """Id of the format in which the skeleton lies beside the file."""

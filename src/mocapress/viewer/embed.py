@@ -86,7 +86,7 @@ def approximate(clip: Clip, max_error: float, name: str = "") -> dict[str, Any]:
     Raises
     ------
     UnsupportedError
-        When a value is no finite number, which JSON cannot hold.
+        When a value is not finite, which JSON cannot express.
 
     """
     text = diffma_json.to_json(clip, DiffMA(max_error=max_error, per="channel"))

@@ -14,19 +14,19 @@ from mocapress.errors import CorruptError
 from mocapress.motion import Clip, Column
 from mocapress.motion.number_format import NumberKind
 
-_GRIDS = {
-    NumberKind.GENERAL: (1, 0),
-    NumberKind.SCIENTIFIC: (1, 1),
-    NumberKind.FIXED: (2, 0),
-    NumberKind.TRIMMED: (2, 0),
-    NumberKind.SHORTEST32: (3, 0),
+_LINES = {
+    NumberKind.GENERAL: (2, 0),
+    NumberKind.SCIENTIFIC: (2, 1),
+    NumberKind.FIXED: (3, 0),
+    NumberKind.TRIMMED: (3, 0),
+    NumberKind.SHORTEST32: (4, 0),
 }
-"""Grid of core/numbers/snap.hpp, and how many digits it has more than the format says."""
+"""Line of core/numbers/line.hpp, and how many digits it has more than the format says."""
 
 
 @dataclass(frozen=True, slots=True)
 class Coding:
-    """What the compiled coder is told.
+    """Settings of the compiled coder.
 
     A table of one alpha takes no indices: (1,) is the parallelogram predictor (Eq. 4), (0,) is
     prediction from the previous frame.
@@ -115,12 +115,12 @@ class Coding:
 def make_plan(
     columns: Sequence[Column], parents: Sequence[int], precisions: Sequence[int]
 ) -> NDArray[np.int32]:
-    """Give the plan of the compiled coder, (C, 4) int32: parent, precision, grid, digits."""
+    """Give the plan of the compiled coder, (C, 4) int32: parent, precision, line, digits."""
     plan = np.zeros((len(columns), 4), dtype=np.int32)
     plan[:, 0] = parents
     plan[:, 1] = precisions
     for row, column in zip(plan, columns, strict=True):
-        if column.decimal is not None and column.decimal.kind in _GRIDS:
-            grid, more = _GRIDS[column.decimal.kind]
-            row[2:] = grid, column.decimal.digits + more
+        if column.decimal is not None and column.decimal.kind in _LINES:
+            line, more = _LINES[column.decimal.kind]
+            row[2:] = line, column.decimal.digits + more
     return plan

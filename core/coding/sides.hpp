@@ -2,14 +2,14 @@
 // reading side ignores it; both return what was coded.
 #pragma once
 
-#include <algorithm>
-#include <bit>
 #include <cstdint>
 
 #include "coding/range_coder.hpp"
+#include "coding/rans.hpp"
 
-namespace mocapress::exact {
+namespace mocapress {
 
+template <class Encoder>
 class Writing {
  public:
   static constexpr bool kReading = false;
@@ -30,23 +30,16 @@ class Writing {
     encoder_.raw(value, count);
     return value;
   }
-  template <int kBits>
-  unsigned symbol(BitTree<kBits>& tree, unsigned symbol) {
-    tree.encode(encoder_, symbol);
-    return symbol;
-  }
+  void put(Interval interval) { encoder_.put(interval); }
   void fail() {}
 
-  Bytes finish() {
-    Bytes bytes;
-    encoder_.finish(bytes);
-    return bytes;
-  }
+  Bytes finish() { return encoder_.finish(); }
 
  private:
   Encoder encoder_;
 };
 
+template <class Decoder>
 class Reading {
  public:
   static constexpr bool kReading = true;
@@ -57,10 +50,8 @@ class Reading {
   bool chance(std::uint32_t chance_of_zero, bool) { return decoder_.chance(chance_of_zero); }
   std::uint64_t uniform(std::uint64_t count, std::uint64_t) { return decoder_.uniform(count); }
   std::uint64_t raw(int count, std::uint64_t) { return decoder_.raw(count); }
-  template <int kBits>
-  unsigned symbol(BitTree<kBits>& tree, unsigned) {
-    return tree.decode(decoder_);
-  }
+  std::uint32_t peek() const { return decoder_.peek(); }
+  void take(Interval interval) { decoder_.take(interval); }
   void fail() { failed_ = true; }
 
   // Whether nothing impossible was read; checked now and then, so that a short stream ends soon.
@@ -72,20 +63,9 @@ class Reading {
   bool failed_ = false;
 };
 
-// One of `count` equally likely numbers; above 2^16 the low bits are raw.
-template <class Side>
-std::uint64_t code_uniform(Side& side, std::uint64_t count, std::uint64_t value) {
-  if (count <= 1) {
-    if (count == 0) side.fail();
-    return 0;
-  }
-  const int low = std::max(static_cast<int>(std::bit_width(count - 1)) - 16, 0);
-  const std::uint64_t high = side.uniform(((count - 1) >> low) + 1, value >> low);
-  const std::uint64_t below = low > 0 ? side.raw(low, value & ((std::uint64_t{1} << low) - 1)) : 0;
-  const std::uint64_t coded = high << low | below;
-  if (coded < count) return coded;
-  side.fail();
-  return count - 1;
-}
+using RangeWriting = Writing<RangeEncoder>;
+using RangeReading = Reading<RangeDecoder>;
+using RansWriting = Writing<RansEncoder>;
+using RansReading = Reading<RansDecoder>;
 
-}  // namespace mocapress::exact
+}  // namespace mocapress
