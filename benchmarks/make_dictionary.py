@@ -2,8 +2,9 @@
 
 ``python benchmarks/make_dictionary.py [--check]`` writes
 ``src/mocapress/container/dictionary1.bin`` from the samples of a checkout and from the names of
-joints that many programs use. With ``--check`` it only says whether the file would differ. The dictionary is a part of the format: once a version of
-mocapress is released, it stays, and a better one gets another name and another method of packing.
+joints that many programs use. With ``--check`` it only says whether the file would differ. The
+dictionary is a part of the format: once a version of mocapress is released, it stays, and a better
+one gets another name and another method of packing.
 """
 
 import argparse
@@ -22,16 +23,16 @@ ROOT = Path(__file__).parents[1]
 TARGET = ROOT / "src/mocapress/container/dictionary1.bin"
 SAMPLES = ROOT / "samples"
 # Of Mixamo, MotionBuilder and the converters of CMU's clips, in the order of their skeletons.
-NAMES = (
-    "Hips Hip Pelvis pelvis root Root LHipJoint LeftUpLeg LeftHip LeftLeg LeftKnee LeftFoot "
-    "LeftAnkle LeftToeBase LeftToe RHipJoint RightUpLeg RightHip RightLeg RightKnee RightFoot "
-    "RightAnkle RightToeBase RightToe LowerBack Spine Spine1 Spine2 Spine3 Chest Chest2 Neck "
-    "Neck1 Head LeftShoulder LeftCollar LeftArm LeftForeArm LeftElbow LeftHand LeftWrist "
-    "LeftFingerBase LeftHandThumb1 LeftHandIndex1 LeftHandMiddle1 LeftHandRing1 LeftHandPinky1 "
-    "LThumb RightShoulder RightCollar RightArm RightForeArm RightElbow RightHand RightWrist "
-    "RightFingerBase RightHandThumb1 RightHandIndex1 RightHandMiddle1 RightHandRing1 "
-    "RightHandPinky1 RThumb "
-).split()
+NAMES = """
+Hips Hip Pelvis pelvis root Root LHipJoint LeftUpLeg LeftHip LeftLeg LeftKnee LeftFoot
+LeftAnkle LeftToeBase LeftToe RHipJoint RightUpLeg RightHip RightLeg RightKnee RightFoot
+RightAnkle RightToeBase RightToe LowerBack Spine Spine1 Spine2 Spine3 Chest Chest2 Neck
+Neck1 Head LeftShoulder LeftCollar LeftArm LeftForeArm LeftElbow LeftHand LeftWrist
+LeftFingerBase LeftHandThumb1 LeftHandIndex1 LeftHandMiddle1 LeftHandRing1 LeftHandPinky1
+LThumb RightShoulder RightCollar RightArm RightForeArm RightElbow RightHand RightWrist
+RightFingerBase RightHandThumb1 RightHandIndex1 RightHandMiddle1 RightHandRing1
+RightHandPinky1 RThumb
+"""
 NOTES = ("author", "license", "source", "name")
 CODECS = ("diffma", "app", "exact")
 FILES = ("mocapbank.bvh", "freebvh.bvh", "cmu_01_01.amc")
@@ -64,7 +65,7 @@ def named(names: tuple[str, ...] | list[str]) -> bytes:
 
 def dictionary() -> bytes:
     """Put it together; what is wanted most often comes last, where it costs least."""
-    parts = [named(NOTES), named(NAMES), records("cmu_01_01.amc", "exact", embed=True)[0]]
+    parts = [named(NOTES), named(NAMES.split()), records("cmu_01_01.amc", "exact", embed=True)[0]]
     parts += [records("cmu_01_01.amc", codec)[0][-220:] for codec in CODECS]
     for name in FILES:
         head, layout = records(name, "exact")

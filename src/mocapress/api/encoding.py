@@ -61,7 +61,7 @@ def coded_chunks(
     """
     values: NDArray[np.float64] = clip.values
     if not codec.lossless and encoded.chunks:
-        values = decoded(codec, encoded.header, encoded.chunks, head, model, clip.frames)
+        values = decoded(codec, encoded.header, encoded.chunks, head, model)
     chunks = []
     for chunk in encoded.chunks:
         rows = values[chunk.first : chunk.first + chunk.frames]

@@ -164,8 +164,7 @@ class Opened:
         ]
         head = self.streams[stream]
         header = read[0].header if group[0].own_header else head.header
-        stop = min(last, group[-1].last) - group[0].first
-        values = decoded(self.codec(stream), header, chunks, head, self._model(stream), stop)
+        values = decoded(self.codec(stream), header, chunks, head, self._model(stream))
         parts = []
         for chunk in read:
             begin = chunk.entry.first - group[0].first
@@ -187,9 +186,8 @@ def decoded(
     chunks: Sequence[Chunk],
     head: StreamHead,
     model: Model | None,
-    stop: int,
 ) -> NDArray[np.float64]:
-    """Decode chunks up to ``stop`` frames behind the first one's first, (stop, C).
+    """Decode successive chunks, the first a restart: (sum of their frames, C).
 
     Raises
     ------
@@ -206,7 +204,7 @@ def decoded(
 
 def digest(rows: NDArray[np.float64]) -> int:
     """Give what a chunk's values are recognised by: CRC-32 of the little-endian doubles."""
-    return zlib.crc32(memoryview(np.ascontiguousarray(rows, dtype="<f8")).cast("B"))
+    return zlib.crc32(np.ascontiguousarray(rows, dtype="<f8").data)
 
 
 def _groups(entries: Sequence[Entry], first: int, last: int, *, alone: bool) -> list[list[Entry]]:

@@ -123,7 +123,7 @@ class Recording:
         clip = self._clip.with_frames(rows, self._clip.frame_time)
         encoded = self._codec.encode(clip)
         if self._codec.lossless:
-            back = decoded(self._codec, encoded.header, encoded.chunks, self._head, None, len(rows))
+            back = decoded(self._codec, encoded.header, encoded.chunks, self._head, None)
             if back.tobytes() != rows.tobytes():
                 raise VerificationError(f"codec {self._codec.id} does not give back the frames")
         if (self.frames + len(rows)) * max(clip.channels, 1) > most_values(self._mcz.length):

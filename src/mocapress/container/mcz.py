@@ -261,7 +261,9 @@ def _check(mcz: Mcz, collect: _Collector) -> None:
     streams = mcz.head.streams if mcz.head else ()
     recording = bool(streams) and not mcz.original and all(s.frames is None for s in streams)
     if not mcz.closed and not recording:
-        error = CorruptError("the file is cut off, or its end has a wrong checksum", offset=mcz.size)
+        error = CorruptError(
+            "the file is cut off, or its end has a wrong checksum", offset=mcz.size
+        )
         collect.damaged("end", error)
     if mcz.head is None and (mcz.entries or (mcz.original and mcz.original.format)):
         collect.damaged("head", CorruptError("a motion file without a head"))
