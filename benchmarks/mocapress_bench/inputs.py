@@ -1,4 +1,4 @@
-"""What the commands share: which clips to measure, and how far they have come."""
+"""Options and output that the commands share."""
 
 import sys
 from collections.abc import Callable
@@ -31,7 +31,7 @@ def clips_in(folder: Path) -> list[Path]:
 
 
 def clips_named(corpus: Path | None) -> tuple[list[Path], Path]:
-    """Give the clips that a command is to measure, and the folder that their names start from."""
+    """Give the clips to measure, and the folder to which their names are relative."""
     folder = corpus or SAMPLES
     if corpus is None and not folder.is_dir():
         usage("name a folder of clips")

@@ -1,4 +1,4 @@
-"""``mocapress bench lossless``: every clip with every lossless codec and tool, in one run."""
+"""``mocapress bench lossless``: every clip, with every lossless codec and tool."""
 
 import hashlib
 import subprocess
@@ -38,8 +38,8 @@ def measure(
     Times are the best of ``repeat``. ``encode_us_per_frame`` and ``decode_us_per_frame`` are the
     codec's own work on the matrix (a tool's: its work on the file); ``compress_s`` and
     ``decompress_s`` are the whole way from file bytes to file bytes. ``counts`` says what
-    ``compressed_bytes`` stand for: the ``file``, or its ``values`` alone, without the text around
-    them. ``model_bytes`` are those of a model's file, once for all clips that share it.
+    ``compressed_bytes`` counts: the ``file``, or only its ``values``, without the text around
+    them. ``model_bytes`` is the size of a model's file, counted once for all clips that share it.
     """
     chosen, missing = contenders(only)
     notes = [f"not installed: {name}" for name in missing]
@@ -75,7 +75,7 @@ def measure(
 
 
 def peak_memory(path: Path, contender: str) -> dict[str, float]:
-    """Measure in a process of its own what compressing and restoring a file adds, MB."""
+    """Measure in a separate process how much memory compressing and restoring a file adds, MB."""
     done = subprocess.run(  # noqa: S603
         [sys.executable, "-m", "mocapress_bench.peak", str(path), contender],
         capture_output=True,

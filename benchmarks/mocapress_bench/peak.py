@@ -18,7 +18,7 @@ def _peak() -> float:
 
 
 def _peak_of_commands() -> float:
-    """Give that of the largest command that was run, or of this process then, if that is more."""
+    """Give the peak of the largest command that was run (or of this process then, if larger)."""
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
 
 

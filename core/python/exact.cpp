@@ -116,12 +116,12 @@ auto encode(const Matrix& values, const Plan& plan, const Couplings& couplings, 
 }
 
 void decode(const nb::bytes& payload, const Output& values, const Plan& plan,
-            const Couplings& couplings, int level, Learned start) {
+            const Couplings& couplings, int level, Learned start, bool whole) {
   const Told arguments(plan, values.shape(1), couplings, level,
                        {std::move(start.first), std::move(start.second)});
   const ByteView bytes{static_cast<const std::uint8_t*>(payload.data()), payload.size()};
   nb::gil_scoped_release unlocked;
-  exact::decode(bytes, values.data(), values.shape(0), arguments.clip);
+  exact::decode(bytes, values.data(), values.shape(0), arguments.clip, whole);
 }
 
 std::vector<std::pair<int, int>> lines(const Matrix& values) {

@@ -92,6 +92,7 @@ def exact_decode(
     couplings: list[tuple[int, list[int], list[int], list[float]]],
     level: int,
     start: tuple[list[float], list[list[float]]],
+    whole: bool,
 ) -> None: ...
 
 # One channel of DiffMA; see core/diffma/codec.hpp.

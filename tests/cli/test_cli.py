@@ -2,29 +2,17 @@
 
 import json
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner, Result
+from running import mocapress, process
 
 import mocapress as mp
-from mocapress.cli.app import app
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 AMC = b":FULLY-SPECIFIED\n:DEGREES\n" + b"".join(
     b"%d\nroot %d.5 2 3 4 5 6\nhip 1.25 -0.125\n" % (i, i) for i in range(1, 9)
 )
-
-
-def mocapress(*words: object) -> Result:
-    return CliRunner().invoke(app, [str(word) for word in words])
-
-
-def process(*words: object, data: bytes = b"") -> subprocess.CompletedProcess[bytes]:
-    command = [sys.executable, "-c", "from mocapress.cli import main; main()", *map(str, words)]
-    return subprocess.run(command, input=data, capture_output=True, check=False)
 
 
 @pytest.fixture

@@ -1,70 +1,108 @@
 """``convert``."""
 
-import sys
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from mocapress import api
-from mocapress.cli.batch import STREAM, Job, Outcome, find, opened, run, target, usage
-from mocapress.cli.models import open_models
-from mocapress.container import diffma_json
-from mocapress.errors import UnsupportedError
-from mocapress.formats import Format, by_name, readable, suffixes, writable
-from mocapress.models import Place
-from mocapress.motion import Clip
-from mocapress.motion.convert import with_rate
-from mocapress.source import MCZ, Source
+import typer
+
+from mocapress.cli.options import (
+    Asf,
+    Debug,
+    Force,
+    Inputs,
+    Jobs,
+    Json,
+    Lenient,
+    Models,
+    Output,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from mocapress.cli.batch import Job
+    from mocapress.formats import Format
+    from mocapress.models import Place
+    from mocapress.motion import Clip
+    from mocapress.source import Source
 
 
-def convert_files(
-    inputs: Sequence[Path],
-    output: Path | None,
-    to: str | None,
-    *,
-    asf: Path | None,
-    models: Sequence[Path],
-    fps: float | None,
-    strict: bool,
-    jobs: int,
-    force: bool,
-    json: bool,
+def convert(
+    inputs: Inputs,
+    output: Output = None,
+    to: Annotated[
+        str | None,
+        typer.Option("--to", help="Format, e.g. bvh or amc; else what the output's name says."),
+    ] = None,
+    asf: Asf = None,
+    models: Models = None,
+    fps: Annotated[
+        float | None,
+        typer.Option(
+            "--fps", help="Frames per second, instead of those that the file states.", min=1e-3
+        ),
+    ] = None,
+    lenient: Lenient = False,
+    jobs: Jobs = 1,
+    force: Force = False,
+    json: Json = False,
+    debug: Debug = False,
 ) -> None:
-    """Convert files; ``.mcz`` and DiffMA JSON are taken, too."""
-    target_format = _target(to, output)
-    files = find(inputs, suffixes(of for of in readable() if of is not target_format))
-    given = open_models(models)
+    """Convert between AMC with ASF and BVH; joint positions stay, nothing is rescaled."""
+    from mocapress import api
+    from mocapress.cli.batch import STREAM, find, run
+    from mocapress.cli.models import open_models, places_for
+    from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
+    from mocapress.container import diffma_json
+    from mocapress.formats import readable, suffixes
+    from mocapress.motion.convert import with_rate
+
+    made = _format(to, output)
+    refuse_other_kinds(output, made.suffixes, known_endings())
+    given = open_models(models or [])
 
     def rename(source: Path) -> Path:
         packed = source.suffix.lower() == ".mcz"
         name = diffma_json.stem(source.stem if packed else source.name)
         kept = Path(name).stem if packed or name == source.name else name
-        return source.with_name(f"{kept}{target_format.suffixes[0]}")
+        return source.with_name(f"{kept}{made.suffixes[0]}")
 
-    def work(job: Job) -> dict[str, Any]:
-        place = target(job, output, rename, many=len(files) > 1)
-        source = opened(job)
-        clip = _read(source, asf, given, strict=strict)
-        clip = with_rate(clip, fps, needed=target_format.timed)
-        result = {
-            "output": str(place),
+    files = plan(
+        find(inputs, suffixes(of for of in readable() if of is not made)),
+        output,
+        rename,
+        force=force,
+        json=json,
+        reads=[asf, *(models or [])],
+    )
+
+    def work(job: "Job") -> dict[str, Any]:
+        assert job.target is not None
+        job.times = False  # what is written is new
+        source = job.opened()
+        clip = _read(source, asf, places_for(job, given), strict=not lenient)
+        clip = with_rate(clip, fps, needed=made.timed)
+        (_, data), *beside = api.printed(clip, made).items()
+        job.outputs[job.target] = data
+        if job.target != STREAM:
+            job.outputs |= {job.target.with_suffix(suffix): more for suffix, more in beside}
+            _keep_skeleton(job, source)
+        return {
+            "output": str(job.target),
             "frames": clip.frames,
             "skeleton": clip.metadata.get("skeleton"),
             "skeleton_found": clip.metadata.get("skeleton_found"),
         }
-        if place == STREAM:
-            sys.stdout.buffer.write(next(iter(api.printed(clip, target_format).values())))
-        else:
-            place.parent.mkdir(parents=True, exist_ok=True)
-            api.write(clip, place, to=target_format.id, force=force)
-        return result
 
-    run(files, work, threads=jobs, json=json, show=_show)
+    run(files, work, threads=jobs, json=json, show=_show, debug=debug)
 
 
-def _target(to: str | None, output: Path | None) -> Format:
+def _format(to: str | None, output: str | None) -> "Format":
+    from mocapress.cli.batch import usage
+    from mocapress.formats import by_name, writable
+
     known = [of for of in writable() if to is None or of.id == to]
-    named = by_name(output.name) if output else None
+    named = by_name(output) if output else None
     found = (known[0] if known else None) if to else named
     if found is None or found not in known:
         ids = ", ".join(of.id for of in writable())
@@ -72,7 +110,11 @@ def _target(to: str | None, output: Path | None) -> Format:
     return found
 
 
-def _read(source: Source, asf: Path | None, models: Sequence[Place], *, strict: bool) -> Clip:
+def _read(source: "Source", asf: Path | None, models: "Sequence[Place]", *, strict: bool) -> "Clip":
+    from mocapress import api
+    from mocapress.errors import UnsupportedError
+    from mocapress.source import MCZ
+
     if source.kind == MCZ:
         clip = api.load_source(source, asf_path=asf, models=models, strict=strict)
     else:
@@ -84,7 +126,19 @@ def _read(source: Source, asf: Path | None, models: Sequence[Place], *, strict: 
     return clip
 
 
-def _show(outcomes: list[Outcome]) -> None:
-    for outcome in outcomes:
-        if outcome.result["output"] != str(STREAM):
-            print(f"{outcome.result['output']}: {outcome.result['frames']} frames")
+def _keep_skeleton(job: "Job", source: "Source") -> None:
+    """Refuse to replace the skeleton that the clip was read with, as it says more than ours."""
+    from mocapress.errors import ParameterError
+
+    for path in job.outputs:
+        used = source.used and Path(source.used.file)
+        if used and used.exists() and path.exists() and path.samefile(used):
+            raise ParameterError(
+                f"{path} would replace the skeleton that this was read with",
+                expected="another output: -o",
+            )
+
+
+def _show(job: "Job") -> None:
+    if str(job.target) != "-":
+        print(f"{job.target}: {job.result['frames']} frames")

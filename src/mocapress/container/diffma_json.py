@@ -222,6 +222,12 @@ def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:
     return kind, layout.join(values, most)
 
 
+def format_of(data: bytes | memoryview) -> str:
+    """Give the id of the format of the motion file that a document was made of, or ``json``."""
+    document = open_json(data)
+    return _unpacked(document)[1] if document.layout else "json"
+
+
 def _packed(layout: Layout, clip: Clip) -> bytes:
     """Give the layout of a document: format, frames, and, packed, the columns and the layout."""
     writer, record = Writer(), Writer()

@@ -1,4 +1,4 @@
-"""Clips as the page carries them: as DiffMA JSON, or with their exact values."""
+"""Clips as the page holds them: as DiffMA JSON, or with their exact values."""
 
 import base64
 import json
@@ -27,12 +27,12 @@ def file(
     max_error: float | None = None,
     strict: bool = True,
 ) -> dict[str, Any]:
-    """Give what is in a motion file, of any kind that mocapress reads.
+    """Give the content of a motion file of any kind that mocapress reads.
 
     Parameters
     ----------
     path
-        A motion file, ``.mcz`` or DiffMA JSON; the latter is embedded as it is.
+        A motion file, ``.mcz`` or DiffMA JSON; DiffMA JSON is embedded unchanged.
     asf_path
         The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
     max_error
@@ -43,7 +43,7 @@ def file(
     Raises
     ------
     MocapressError
-        When the file is broken, or no motion.
+        When the file is broken, or is not motion.
     OSError
         When it cannot be read.
 
@@ -65,7 +65,7 @@ def file(
 
 
 def exact(clip: Clip, name: str = "") -> dict[str, Any]:
-    """Give a clip with its values as they are: float64, one channel after the other, in base64."""
+    """Give a clip with its exact values: float64, one channel after the other, in base64."""
     values = np.ascontiguousarray(clip.values.T, dtype="<f8").tobytes()
     content: dict[str, Any] = {
         "names": [column.name for column in clip.columns],

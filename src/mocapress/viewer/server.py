@@ -15,7 +15,7 @@ class PageServer(ThreadingHTTPServer):
     Parameters
     ----------
     document
-        The page, HTML.
+        The page, as HTML.
     policy
         Its content security policy.
     port
