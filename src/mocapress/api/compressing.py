@@ -202,7 +202,7 @@ def _compress_motion(
         blob = motion_file(
             parts,
             data,
-            PurePath(source.name).name,
+            _name(source.name),
             way,
             encoded,
             own,
@@ -271,12 +271,17 @@ def motion_file(
     return b"".join(made)
 
 
+def _name(path: str) -> str:
+    """Give a file's name without folders; what is no UTF-8 in it is replaced."""
+    return PurePath(path).name.encode(errors="surrogateescape").decode(errors="replace")
+
+
 def _companions(source: Source) -> list[Companion]:
     used = source.used
     of = source.format
     if used is None or of is None or of.companion is None:
         return []
-    return [Companion(of.companion, PurePath(used.file).name, used.read())]
+    return [Companion(of.companion, _name(used.file), used.read())]
 
 
 def _check(blob: bytes, data: bytes, codec: Codec, clip: Clip, model: Model | None) -> Loss | None:
@@ -299,7 +304,7 @@ def _check(blob: bytes, data: bytes, codec: Codec, clip: Clip, model: Model | No
 
 def _compress_plain(source: Source, notes: Mapping[str, str]) -> bytes:
     data = source.data
-    name, digest = PurePath(source.name).name, hashlib.sha256(data).digest()
+    name, digest = _name(source.name), hashlib.sha256(data).digest()
     parts: list[bytes] = []
     writer = MczWriter(parts.append)
     writer.original(Original("", name, len(data), digest, (), pack(data)))

@@ -113,7 +113,7 @@ class Opened:
         kept = np.zeros(len(values), np.bool_)
         for group in _groups(self.mcz.of_stream[stream], first, last, alone=self.salvage):
             try:
-                for chunk, rows in self._decode(stream, group, last):
+                for chunk, rows in self._decode(stream, group):
                     begin, end = max(chunk.first, first), min(chunk.first + len(rows), last)
                     if begin < end:
                         values[begin - first : end - first] = rows[
@@ -152,7 +152,7 @@ class Opened:
         )
 
     def _decode(
-        self, stream: int, group: Sequence[Entry], last: int
+        self, stream: int, group: Sequence[Entry]
     ) -> list[tuple[Entry, NDArray[np.float64]]]:
         """Decode successive chunks with one codec header, the first of them a restart."""
         if not group[0].restart or any(a.last != b.first for a, b in pairwise(group)):
