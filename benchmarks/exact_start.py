@@ -29,7 +29,7 @@ def main(corpus: Path, target: Path) -> None:
     """Learn, and write the tables."""
     folders = sorted(path for path in corpus.iterdir() if path.is_dir())[::2]
     paths = [path for folder in folders for path in sorted(folder.glob("*.amc"))]
-    start = start_of(Exact(level=9).train(mp.read(path) for path in paths))
+    start = start_of(Exact(level=9).train(mp.read(path).main for path in paths))
     shape = start.shared[NODES : 2 * NODES]
     noise = next(numbers for numbers in start.columns.values() if len(numbers) == 4 * NODES)
     slow = noise[1::2]

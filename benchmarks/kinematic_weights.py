@@ -297,7 +297,7 @@ def measure(clips: Sequence[Clip]) -> None:
     for clip in clips:
         bare = clip.with_columns(tuple(replace(c, unit="") for c in clip.columns))
         for i, own in enumerate((clip, bare)):
-            totals[i] += sum(len(chunk.payload) for chunk in Exact(level=9).encode(own).chunks)
+            totals[i] += sum(len(chunk.payload) for chunk in Exact(level=9).encode(own.main).chunks)
     print(f"{len(clips)} clips: {totals[1]:.0f} bytes without, {totals[0]:.0f} with the skeleton")
 
 

@@ -101,7 +101,9 @@ def _codec_row(
     source = Source(path)
     parts, split_s = _best(source.split, repeat)
     clip = parts.clip
-    encoded, encode_s = _best(lambda: codec.encode(clip, model=model), repeat)
+    encoded, encode_s = _best(
+        lambda: codec.encode(clip.main, skeleton=clip.skeleton, model=model), repeat
+    )
     blob, pack_s = _best(
         lambda: motion_file(parts, data, path.name, codec, encoded, model, with_skeleton=False),
         repeat,

@@ -124,10 +124,10 @@ def describe_mcz(
     facts |= describe_clip(columns, frames)
     if frames and main.columns:
         facts["bits_per_sample"] = 8 * mcz.size / (frames * len(main.columns))
-    measure = getattr(opened.codec(), "measure", None)
-    if original is not None and measure is not None and facts["model_found"] is not False:
+    codec = opened.codec()
+    if original is not None and codec.can.measured and facts["model_found"] is not False:
         clip = columns.with_frames(opened.rows().values, columns.frame_time)
-        facts |= measure(clip, Encoded(main.header, opened.coded()), original.size)
+        facts |= codec.measure(clip, Encoded(main.header, opened.coded()), original.size)
     return facts
 
 

@@ -173,7 +173,7 @@ def test_clips_of_the_skeleton_come_back(walk: Clip, level: int) -> None:
     values[100:110, 50] = [np.nan, np.inf, -np.inf, 1e300, -0.0, 5e-324, 1e6, -1e6, 720, 1]
     codec = Exact(level=level)
     clip = walk[:300].with_values(values)
-    coded = codec.encode(clip)
+    coded = codec.encode(clip.main)
     decoded = codec.decode(coded.header, coded.chunks, clip.columns)
     assert decoded.tobytes() == values.tobytes()
 
@@ -184,7 +184,7 @@ def test_geometry_makes_clips_of_the_skeleton_smaller(walk: Clip) -> None:
     assert is_known(known.columns)
     assert not is_known(unknown.columns)
     small, large = (
-        sum(len(chunk.payload) for chunk in Exact(level=9).encode(clip).chunks)
+        sum(len(chunk.payload) for chunk in Exact(level=9).encode(clip.main).chunks)
         for clip in (known, unknown)
     )
     assert small < 0.995 * large
@@ -192,6 +192,6 @@ def test_geometry_makes_clips_of_the_skeleton_smaller(walk: Clip) -> None:
 
 def test_a_header_cannot_claim_the_skeleton_for_other_columns(walk: Clip) -> None:
     clip = walk[:10]
-    coded = Exact(level=9).encode(clip)
+    coded = Exact(level=9).encode(clip.main)
     with pytest.raises(CorruptError):
         Exact(level=9).decode(coded.header, coded.chunks, clip.columns[:-1])

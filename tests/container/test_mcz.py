@@ -58,7 +58,7 @@ def stream(name: str, frames: int | None, columns: tuple[Column, ...] = COLUMNS)
 def chunk(
     index: int, first: int, frames: int, payload: bytes, *, restart: bool = True
 ) -> CodedChunk:
-    return CodedChunk(Entry(index, first, frames, restart, False, 0, 0), 7, b"", payload)
+    return CodedChunk(Entry(index, first, frames, restart, False, False, 0, 0), 7, b"", payload)
 
 
 def made(
@@ -461,6 +461,7 @@ def test_opening_costs_as_much_as_there_is() -> None:
 
 def test_what_the_end_costs() -> None:
     entries = [
-        Entry(0, 512 * i, 512, True, False, 5 + 9000 * i, 5 + 9000 * (i + 1)) for i in range(9)
+        Entry(0, 512 * i, 512, True, False, False, 5 + 9000 * i, 5 + 9000 * (i + 1))
+        for i in range(9)
     ]
     assert len(write_end(entries)) <= 2 * len(entries) + 16

@@ -144,7 +144,9 @@ def compress_clip(
         if not is_storable_time(stream.frame_time):
             raise UnsupportedError("frame time", found=str(stream.frame_time))
         alone, own = Clip({name: stream}, clip.skeleton), model if index == 0 else None
-        head, of_stream = coded(alone, name, index, made, made.encode(alone, model=own), own)
+        head, of_stream = coded(
+            alone, name, index, made, made.encode(stream, skeleton=clip.skeleton, model=own), own
+        )
         heads.append(head)
         chunks += of_stream
     said = {**({"name": clip.name} if clip.name else {}), **clip.metadata, **(notes or {})}
@@ -198,7 +200,7 @@ def _compress_motion(
 
     def work(way: Codec) -> tuple[bytes, Loss | None]:
         own = model if way is codec else None
-        encoded = way.encode(clip, model=own)
+        encoded = way.encode(clip.main, skeleton=clip.skeleton, model=own)
         blob = motion_file(
             parts,
             data,

@@ -61,13 +61,14 @@ def coded_chunks(
     """
     values: NDArray[np.float64] = clip.values
     if not codec.lossless and encoded.chunks:
-        values = decoded(codec, encoded.header, encoded.chunks, head, model)
+        values = decoded(codec, encoded.header, encoded.chunks, head, model, clip.frames)
     chunks = []
     for chunk in encoded.chunks:
         rows = values[chunk.first : chunk.first + chunk.frames]
-        entry = Entry(index, first + chunk.first, chunk.frames, chunk.restart, own_header, 0, 0)
+        begin, dependent = first + chunk.first, bool(chunk.needs)
+        entry = Entry(index, begin, chunk.frames, chunk.restart, own_header, dependent, 0, 0)
         header = encoded.header if own_header else b""
-        chunks.append(CodedChunk(entry, digest(rows), header, chunk.payload))
+        chunks.append(CodedChunk(entry, digest(rows), header, chunk.payload, chunk.needs))
     return chunks
 
 

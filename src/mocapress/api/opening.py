@@ -113,7 +113,7 @@ class Opened:
         kept = np.zeros(len(values), np.bool_)
         for group in _groups(self.mcz.of_stream[stream], first, last, alone=self.salvage):
             try:
-                for chunk, rows in self._decode(stream, group):
+                for chunk, rows in self._decode(stream, group, last):
                     begin, end = max(chunk.first, first), min(chunk.first + len(rows), last)
                     if begin < end:
                         values[begin - first : end - first] = rows[
@@ -152,7 +152,7 @@ class Opened:
         )
 
     def _decode(
-        self, stream: int, group: Sequence[Entry]
+        self, stream: int, group: Sequence[Entry], last: int
     ) -> list[tuple[Entry, NDArray[np.float64]]]:
         """Decode successive chunks with one codec header, the first of them a restart."""
         if not group[0].restart or any(a.last != b.first for a, b in pairwise(group)):
@@ -164,7 +164,8 @@ class Opened:
         ]
         head = self.streams[stream]
         header = read[0].header if group[0].own_header else head.header
-        values = decoded(self.codec(stream), header, chunks, head, self._model(stream))
+        stop = min(last, group[-1].last) - group[0].first
+        values = decoded(self.codec(stream), header, chunks, head, self._model(stream), stop)
         parts = []
         for chunk in read:
             begin = chunk.entry.first - group[0].first
@@ -186,8 +187,9 @@ def decoded(
     chunks: Sequence[Chunk],
     head: StreamHead,
     model: Model | None,
+    stop: int,
 ) -> NDArray[np.float64]:
-    """Decode successive chunks, the first a restart: (sum of their frames, C).
+    """Decode the first ``stop`` frames of successive chunks, the first a restart: (stop, C).
 
     Raises
     ------
@@ -195,8 +197,8 @@ def decoded(
         When they do not follow the codec's format.
 
     """
-    values = codec.decode(header, chunks, head.columns, model=model)
-    expected = sum(chunk.frames for chunk in chunks), len(head.columns)
+    values = codec.decode(header, chunks, head.columns, model=model, stop=stop)
+    expected = stop, len(head.columns)
     if values.shape != expected:
         raise CorruptError("decoded values", expected=str(expected), found=str(values.shape))
     return values

@@ -121,9 +121,9 @@ class Recording:
 
     def _write_chunk(self, rows: NDArray[np.float64]) -> None:
         clip = self._clip.with_frames(rows, self._clip.frame_time)
-        encoded = self._codec.encode(clip)
+        encoded = self._codec.encode(clip.main, skeleton=clip.skeleton)
         if self._codec.lossless:
-            back = decoded(self._codec, encoded.header, encoded.chunks, self._head, None)
+            back = decoded(self._codec, encoded.header, encoded.chunks, self._head, None, len(rows))
             if back.tobytes() != rows.tobytes():
                 raise VerificationError(f"codec {self._codec.id} does not give back the frames")
         if (self.frames + len(rows)) * max(clip.channels, 1) > most_values(self._mcz.length):

@@ -10,7 +10,8 @@ from mocapress.errors import CorruptError
 from mocapress.records import Reader, Writer
 
 DISTANCE = 4
-_CONTINUES, _OWN_HEADER, _FLAGS = 1, 2, 4
+_CONTINUES, _OWN_HEADER, _NEEDS, _FLAGS = 1, 2, 4, 8
+_DIGEST = 32
 _MOST_FRAMES = 2**40
 
 
@@ -25,6 +26,8 @@ class Entry(NamedTuple):
     """Whether decoding may begin here; otherwise it begins at the last chunk before with it."""
     own_header: bool
     """Whether it has a codec header of its own."""
+    dependent: bool
+    """Whether decoding needs chunks of other clips."""
     begin: int
     """Byte offset of its section."""
     end: int
@@ -44,6 +47,8 @@ class CodedChunk(NamedTuple):
     header: bytes
     """The codec header that is the chunk's own, or nothing."""
     payload: bytes
+    needs: tuple[bytes, ...] = ()
+    """Which chunks of other clips decoding needs, by SHA-256."""
 
 
 def write_chunk(chunk: CodedChunk) -> bytes:
@@ -56,6 +61,9 @@ def write_chunk(chunk: CodedChunk) -> bytes:
     writer.data += chunk.digest.to_bytes(4, "little")
     if entry.own_header:
         writer.bytes(chunk.header)
+    if entry.dependent:
+        writer.integer(len(chunk.needs))
+        writer.data += b"".join(chunk.needs)
     return bytes(writer.data) + chunk.payload
 
 
@@ -74,10 +82,12 @@ def read_chunk(content: bytes, begin: int, end: int) -> CodedChunk:
     digest = int.from_bytes(reader.raw(4), "little")
     own = bool(head & _OWN_HEADER)
     header = reader.bytes() if own else b""
+    dependent = bool(head & _NEEDS)
+    needs = tuple(reader.raw(_DIGEST) for _ in range(reader.count(_DIGEST) if dependent else 0))
     if frames == 0:
         raise CorruptError("a chunk without frames", offset=begin)
-    entry = Entry(head // _FLAGS, first, frames, not head & _CONTINUES, own, begin, end)
-    return CodedChunk(entry, digest, header, reader.raw(reader.left))
+    entry = Entry(head // _FLAGS, first, frames, not head & _CONTINUES, own, dependent, begin, end)
+    return CodedChunk(entry, digest, header, reader.raw(reader.left), needs)
 
 
 def write_end(entries: Sequence[Entry]) -> bytes:
@@ -129,6 +139,7 @@ def read_end(content: bytes, begin: int) -> list[Entry]:
                 of_chunk,
                 not head & _CONTINUES,
                 bool(head & _OWN_HEADER),
+                bool(head & _NEEDS),
                 start,
                 place,
             )
@@ -139,4 +150,9 @@ def read_end(content: bytes, begin: int) -> list[Entry]:
 
 
 def _stream_and_flags(entry: Entry) -> int:
-    return _FLAGS * entry.stream + _CONTINUES * (not entry.restart) + _OWN_HEADER * entry.own_header
+    return (
+        _FLAGS * entry.stream
+        + _CONTINUES * (not entry.restart)
+        + _OWN_HEADER * entry.own_header
+        + _NEEDS * entry.dependent
+    )
