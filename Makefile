@@ -7,7 +7,7 @@ CORPUS_SOURCE := ../shared/data
 SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined -fno-sanitize-recover=all -Icore
 FUZZ_RUNS ?= 100000
 sources := $(wildcard core/*/*.cpp core/*/*.hpp)
-headers := $(filter %.hpp,$(sources))
+headers := $(filter %.hpp,$(sources)) $(wildcard core/exact/data/*)
 kernels := $(filter-out core/python/% core/check/% core/fuzz/%,$(filter %.cpp,$(sources)))
 
 .PHONY: demo test check tests test-js browser sanitize fuzz bench wheel clean

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "exact/kinematics_tables.hpp"
+#include "exact/tables.hpp"
 
 namespace mocapress::exact {
 namespace {
@@ -69,7 +69,7 @@ void add_guessed(std::vector<ExpertPlan>& plans, std::span<const Column> columns
                  double fading) {
   const auto limb = [&](std::size_t channel) {
     const int place = columns[channel].place;
-    return place < 0 ? -1 : kSkeletonChannel[static_cast<std::size_t>(place)].limb;
+    return place < 0 ? -1 : kCmu.channels[static_cast<std::size_t>(place)].limb;
   };
   for (std::size_t from = 0, to = 0; from < columns.size(); from = to) {
     while (to < columns.size() && limb(to) == limb(from)) ++to;

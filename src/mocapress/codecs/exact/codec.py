@@ -20,7 +20,7 @@ from mocapress.codecs.contract import (
 from mocapress.codecs.exact.coupling_search import find_couplings
 from mocapress.codecs.exact.header import pack_header, unpack_header
 from mocapress.codecs.exact.roles import Role, Roles, find_roles
-from mocapress.codecs.exact.skeletons import is_known
+from mocapress.codecs.exact.skeletons import skeleton_of
 from mocapress.codecs.exact.start import Learned, Start, model_of, start_of
 from mocapress.errors import CorruptError, ParameterError
 from mocapress.motion import Column, Skeleton, Stream
@@ -150,7 +150,7 @@ def _roles(values: NDArray[np.float64], columns: Sequence[Column], level: int) -
     return find_roles(
         values,
         lambda predicted, lines: find_couplings(values, columns, predicted, lines),
-        places=is_known(columns),
+        skeleton=skeleton_of(columns),
     )
 
 
