@@ -22,8 +22,8 @@ from mocapress import api
 from mocapress.codecs.exact import Exact, codec
 from mocapress.codecs.exact.roles import Role, Roles, _exponents, _turns
 from mocapress.container import Kind, parse
-from mocapress.formats.files import find_asf
 from mocapress.motion import Clip, Column
+from mocapress.source import Source
 from mocapress_bench.tables import markdown
 
 Array = NDArray[np.float64]
@@ -35,11 +35,10 @@ FLOAT64 = (0, 0)  # of core/numbers/line.hpp
 find_roles = codec._roles
 
 
-class Source(NamedTuple):
-    """A file, its skeleton, and what it holds."""
+class Sample(NamedTuple):
+    """A file, and what it holds."""
 
-    data: bytes
-    asf: bytes
+    source: Source
     clip: Clip
 
 
@@ -78,29 +77,29 @@ PARTS: dict[str, Change] = {
 }
 
 
-def size(source: Source, exact: Exact) -> int:
+def size(sample: Sample, exact: Exact) -> int:
     """Give the size of the file that the codec makes, be it larger than other ways would."""
     with patch.object(api, "_POOR", 1):
-        made = api.compress_bytes(source.data, exact, asf_data=source.asf)
+        made = api.compress_source(sample.source, exact)
     if made.warning or parse(made.blob).kind is not Kind.AMC:
         sys.exit(made.warning or "the codec made no file")
     return len(made.blob)
 
 
-def size_with(sources: Sequence[Source], change: Change) -> int:
+def size_with(samples: Sequence[Sample], change: Change) -> int:
     """Give the size of all files with other roles."""
 
     def roles(values: Array, columns: Sequence[Column], level: int) -> Roles:
         return change(find_roles(values, columns, level), values)
 
     with patch.object(codec, "_roles", roles):
-        return sum(size(source, Exact(level=STRONGEST)) for source in sources)
+        return sum(size(sample, Exact(level=STRONGEST)) for sample in samples)
 
 
-def times(sources: Sequence[Source], exact: Exact) -> list[str]:
+def times(samples: Sequence[Sample], exact: Exact) -> list[str]:
     """Give µs per frame to find the roles, to encode besides, and to decode."""
     spent = np.zeros(3)
-    for _, _, clip in sources:
+    for _, clip in samples:
         begin = thread_time()
         find_roles(np.ascontiguousarray(clip.values), clip.columns, exact.level)
         found = thread_time()
@@ -109,36 +108,33 @@ def times(sources: Sequence[Source], exact: Exact) -> list[str]:
         exact.decode(encoded.header, encoded.chunks, clip.columns)
         finding, encoding, decoding = np.diff([begin, found, coded, thread_time()])
         spent += finding, encoding - finding, decoding
-    return [f"{1e6 * time:.1f}" for time in spent / sum(s.clip.frames for s in sources)]
+    return [f"{1e6 * time:.1f}" for time in spent / sum(sample.clip.frames for sample in samples)]
 
 
 def main(corpus: Path) -> None:
     """Measure, and print the tables."""
-    sources = []
-    for path in sorted(corpus.rglob("*.amc"))[FIRST::EVERY]:
-        asf = find_asf(path)
-        skeleton = asf.read_bytes() if asf else b""
-        sources.append(Source(path.read_bytes(), skeleton, mocapress.read(path)))
-    raw = sum(len(source.data) for source in sources)
-    frames = [source.clip.frames for source in sources]
-    print(f"{len(sources)} clips, {sum(frames):,} frames, {raw:,} bytes.\n")
+    paths = sorted(corpus.rglob("*.amc"))[FIRST::EVERY]
+    samples = [Sample(Source(path), mocapress.read(path)) for path in paths]
+    raw = sum(sample.source.size for sample in samples)
+    frames = [sample.clip.frames for sample in samples]
+    print(f"{len(samples)} clips, {sum(frames):,} frames, {raw:,} bytes.\n")
 
     def row(name: str, total: int, *more: str) -> list[str]:
         share = total / usual - 1
         return [name, f"{total:,}", f"{raw / total:.3f}", f"{100 * share:+.2f} %", *more]
 
-    usual = sum(size(source, Exact(level=STRONGEST)) for source in sources)
+    usual = sum(size(sample, Exact(level=STRONGEST)) for sample in samples)
     header = ["bytes", "ratio", "more"]
-    rows = [row(part, size_with(sources, change)) for part, change in PARTS.items()]
+    rows = [row(part, size_with(samples, change)) for part, change in PARTS.items()]
     print(markdown([f"level {STRONGEST}", *header], rows))
     rows = []
     for exact in map(Exact, range(1, STRONGEST + 1)):
-        total = sum(size(source, exact) for source in sources)
-        rows.append(row(str(exact.level), total, *times(sources, exact)))
+        total = sum(size(sample, exact) for sample in samples)
+        rows.append(row(str(exact.level), total, *times(samples, exact)))
     print(markdown(["level", *header, *TIMES], rows))
     rows = []
     for chunk in CHUNKS:
-        sizes = [size(source, Exact(level=STRONGEST, chunk=chunk)) for source in sources]
+        sizes = [size(sample, Exact(level=STRONGEST, chunk=chunk)) for sample in samples]
         own = str(sum(count > chunk for count in frames)), f"{sizes[int(np.argmax(frames))]:,}"
         rows.append(row("whole clips" if chunk == WHOLE else str(chunk), sum(sizes), *own))
     header += ["clips cut", f"clip of {max(frames):,} frames"]

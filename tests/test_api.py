@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 import mocapress as mp
-from mocapress.api import compress_bytes
+from mocapress.api import compress_source
+from mocapress.source import Source
 from mocapress.storage import write_whole
 
 BROKEN = {
@@ -53,7 +54,7 @@ def test_broken_files_are_errors_to_read_and_still_compress(name: str, tmp_path:
         mp.read(file)
     assert str(file) in str(caught.value)
     assert caught.value.expected
-    made = compress_bytes(BROKEN[name], name=str(file))
+    made = compress_source(Source(BROKEN[name], str(file)))
     assert made.warning
     assert mp.decompress(made.blob) == BROKEN[name]
 
@@ -134,14 +135,15 @@ def test_an_amc_without_its_asf_still_compresses(samples: Path, tmp_path: Path) 
     assert len(with_asf) < len(mp.compress(alone, "app"))
 
 
-def test_a_skeleton_of_another_is_left_away(samples: Path) -> None:
-    other = b":root\norder TX TY TZ RX RY RZ\n:bonedata\n:hierarchy\n"
+def test_a_skeleton_of_another_is_left_away(samples: Path, tmp_path: Path) -> None:
     data = (samples / "cmu_01_01.amc").read_bytes()
-    made = compress_bytes(data, name="x.amc", asf_data=other)
-    assert made.warning
-    assert "without a skeleton" in made.warning
-    assert mp.decompress(made.blob) == data
-    assert len(made.blob) < len(data) / 8
+    (tmp_path / "x.amc").write_bytes(data)
+    other = b":root\norder TX TY TZ RX RY RZ\n:bonedata\n:hierarchy\n"
+    (tmp_path / "x.asf").write_bytes(other)
+    with pytest.warns(mp.MotionWarning, match=r"x\.asf: .*bone.*the skeleton is left away"):
+        blob = mp.compress(tmp_path / "x.amc")
+    assert mp.decompress(blob) == data
+    assert len(blob) < len(data) / 8
 
 
 def test_the_skeleton_is_found_beside(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ ROWS = [
     {"records", "storage"},
     {"motion"},
     {"formats", "codecs"},
+    {"source"},
     {"container"},
     {"models"},
     {"restore"},

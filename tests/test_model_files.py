@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 import mocapress as mp
-from mocapress.api import compress_bytes
 from mocapress.container import Kind, parse
 from mocapress.models import Place
 from mocapress.storage import ExistsError
@@ -32,7 +31,8 @@ def other(samples: Path) -> mp.Model:
 
 @pytest.fixture
 def walk(samples: Path) -> bytes:
-    return b"".join((samples / "freebvh.bvh").read_bytes().splitlines(keepends=True)[:-9])
+    lines = (samples / "freebvh.bvh").read_bytes().splitlines(keepends=True)
+    return b"".join(lines[:-9]).replace(b"Frames: 69", b"Frames: 60")
 
 
 @pytest.fixture
@@ -158,8 +158,7 @@ def test_files_of_models_are_not_overwritten_unasked(model: mp.Model, tmp_path: 
 
 
 def test_what_is_no_motion_needs_no_model(model: mp.Model) -> None:
-    made = compress_bytes(b"no motion", CODEC, model=model)
-    assert mp.decompress(made.blob) == b"no motion"
+    assert mp.decompress(mp.compress(b"no motion", CODEC, model=model)) == b"no motion"
 
 
 def test_a_model_works_from_its_file(model: mp.Model, walk: bytes, tmp_path: Path) -> None:

@@ -1,1 +1,1 @@
-"""Measurements: the codecs beside each other and beside other tools."""
+"""Measure the codecs of mocapress beside each other and beside other compressors."""

@@ -155,7 +155,7 @@ def draw(numbers: Numbers, folder: Path) -> list[Path]:
 
 
 def _magnitudes(alphas: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Take those that are defined, of columns that move with their parents' columns."""
+    """Give the magnitudes of the alphas that are defined and not 0 (parents that move)."""
     magnitudes: NDArray[np.float64] = np.abs(alphas[np.isfinite(alphas) & (alphas != 0)])
     return magnitudes
 

@@ -1,6 +1,6 @@
-"""The predictors that the APP paper compares with (its Table 2), over the same mantissa coder.
+"""The predictors that the APP paper compares with (its Table 2), with the same mantissa coder.
 
-They keep the codec contract but are not registered: they are for the benchmark.
+They follow the codec contract but are not registered: they exist for the benchmark only.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from mocapress.motion import Clip, Column
 
 @dataclass(frozen=True, slots=True)
 class _OneAlpha(Codec):
-    """APP with the same alpha everywhere and so without indices."""
+    """APP with a single alpha, and therefore without indices."""
 
     id: ClassVar[str]
     alpha: ClassVar[float]
@@ -28,7 +28,7 @@ class _OneAlpha(Codec):
 
     @property
     def coding(self) -> Coding:
-        """What the compiled coder is told."""
+        """Settings of the compiled coder."""
         return Coding((self.alpha,), 1, self.mantissa_limit, self.chunk)
 
     def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:  # noqa: ARG002
@@ -57,7 +57,7 @@ class Parallelogram(_OneAlpha):
 
 @dataclass(frozen=True, slots=True)
 class PreviousFrame(_OneAlpha):
-    """MPEG-4 FBA's linear prediction with the quantisation left out, "LP" in the paper."""
+    """MPEG-4 FBA's linear prediction without quantisation, "LP" in the paper."""
 
     id: ClassVar[str] = "mpeg4-lp"
     alpha: ClassVar[float] = 0.0

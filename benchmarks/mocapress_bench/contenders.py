@@ -1,4 +1,4 @@
-"""Who is compared: codecs on a clip, compressors of numbers on its matrix, tools on its file."""
+"""The contenders: codecs code a clip, compressors of numbers its matrix, tools its file."""
 
 import bz2
 import gzip
@@ -41,17 +41,17 @@ Contender = Codec | Rival | Tool
 
 
 def contenders(only: str = "") -> tuple[dict[str, Contender], list[str]]:
-    """Give those that were asked for, and the names of those that are not installed.
+    """Give the contenders asked for, and the names of those that are not installed.
 
     Parameters
     ----------
     only
-        Names, or codecs as text (``app:t=10``), with commas between; all where empty.
+        Names, or codecs as text (``app:t=10``), separated by commas; all if empty.
 
     Raises
     ------
     ParameterError
-        When one is not known.
+        When a name is unknown.
 
     """
     numeric, no_rivals = _installed(_RIVALS)
@@ -74,7 +74,7 @@ def contenders(only: str = "") -> tuple[dict[str, Contender], list[str]]:
 
 
 def _codec_contenders() -> dict[str, Codec]:
-    """Give all lossless codecs, each level that is compared, and the rivals of APP's paper."""
+    """Give all lossless codecs, at each level that is compared, and the rivals of the APP paper."""
     found: dict[str, Codec] = {}
     for name in codecs.codec_ids():
         made = codecs.codec(name)
@@ -123,7 +123,7 @@ def _brotli() -> Tool:
 
 
 def _ppmd() -> Tool:
-    """PPMd as the command 7z has it at its strongest; only where that is installed."""
+    """Run PPMd in the command 7z at its strongest setting, where that is installed."""
     command = shutil.which("7z") or shutil.which("7za")
     if command is None:
         raise ImportError
@@ -143,7 +143,7 @@ def _ppmd() -> Tool:
 
 
 def _zpaq() -> Tool:
-    """Zpaq, the archiver, at its strongest; only where that is installed."""
+    """Run the archiver zpaq at its strongest setting, where it is installed."""
     command = shutil.which("zpaq")
     if command is None:
         raise ImportError

@@ -1,13 +1,13 @@
-"""MPEG-4 FBA's DCT scheme with the quantisation left out, made reversible.
+"""MPEG-4 FBA's DCT scheme without quantisation, made reversible.
 
 Every 16 frames of a column become 16 coefficients, kept as float32. The first (DC) is predicted by
 that of the block before and coded by Algorithm 1; the others (AC) are coded directly: exponents
 adaptively, as differences from the same coefficient of the block before, sign and mantissa raw.
 (Algorithm 1 with prediction 0 would leave the exponent raw as well, 33 bits a coefficient.)
 
-The inverse transform of rounded coefficients only comes near the values. Encoder and decoder
-compute it alike, in a fixed order of additions, and snap it to the column's decimal grid; what is
-still missing, counted in floats, follows as a stream of corrections. So the scheme is lossless.
+The inverse transform of rounded coefficients only approximates the values. Encoder and decoder
+compute it identically, with additions in a fixed order, and round it to the column's decimal grid.
+Corrections, counted in floats, follow as a stream of their own, so the scheme is lossless.
 """
 
 from collections.abc import Sequence
@@ -142,7 +142,7 @@ def _basis() -> NDArray[np.float64]:
 
 
 def _forward(values: NDArray[np.float64]) -> NDArray[np.float32]:
-    """Give coefficients (16, blocks, C); the last block is filled up with its last frame."""
+    """Give coefficients (16, blocks, C); the last block is padded with its last frame."""
     padding = (0, -len(values) % _BLOCK)
     filled = np.pad(values, (padding, (0, 0)), mode="edge" if len(values) else "constant")
     frames = filled.reshape(len(filled) // _BLOCK, _BLOCK, values.shape[1]).transpose(1, 0, 2)
@@ -155,7 +155,7 @@ def _forward(values: NDArray[np.float64]) -> NDArray[np.float32]:
 def _inverse(
     coefficients: NDArray[np.float32], frames: int, plan: NDArray[np.int32]
 ) -> NDArray[np.float64]:
-    """Give the values that the coefficients come near to, (F, C), on the columns' grids."""
+    """Give the values that the coefficients approximate, (F, C), on the columns' grids."""
     with np.errstate(all="ignore"):
         blocks = _sum_in_order(_basis().T, coefficients.astype(np.float64))
     channels = coefficients.shape[2]
@@ -189,7 +189,7 @@ def _from_ordinals(ordinals: NDArray[np.int64], plan: NDArray[np.int32]) -> NDAr
     single = ordinals.astype(np.int32)
     single = single ^ (single >> 31 & 0x7FFFFFFF)
     double = ordinals ^ (ordinals >> 63 & 0x7FFFFFFFFFFFFFFF)
-    with np.errstate(invalid="ignore"):  # of float64 columns this is no number
+    with np.errstate(invalid="ignore"):  # meaningless for float64 columns
         snapped = single.view(np.float32).astype(np.float64)
     _core.snap(snapped, np.where(plan[:, 1:2] == 2, plan, 0).astype(np.int32))
     return np.where(plan[:, 1] == 0, double.view(np.float64), snapped)

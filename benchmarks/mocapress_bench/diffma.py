@@ -1,4 +1,4 @@
-"""``mocapress bench diffma``: the evaluation of the paper (section 3.4), and what lies past it."""
+"""``mocapress bench diffma``: the evaluation of the paper (section 3.4) and of our extensions."""
 
 import json
 import lzma
@@ -99,16 +99,16 @@ def measure(
 
 
 def speed(path: Path, repeat: int = 5) -> dict[str, float]:
-    """Measure million samples per second of one clip, the best of some runs, by way of work.
+    """Measure the speed on one clip, million samples per second: the best of several runs.
 
-    One core is measured in seconds of processor time, which what else runs does not lengthen.
+    For one core, time is processor time, which other processes do not lengthen.
     """
     clip = api.read(path)
     channels = np.tile(by_channel(clip.values), (1, max(1, 2_000_000 // clip.values.size)))
     codec, frames = DiffMA(), channels.shape[1]
     plans = codec.plan(clip)
     records = codec.coding.encode(channels, plans)
-    text = clip_to_json(clip.with_values(channels.T), codec)
+    text = clip_to_json(clip.with_frames(channels.T, clip.frame_time), codec)
     found = {
         "encode, 1 core": _best(
             lambda: [codec.coding.encode(c[None], plans[:1]) for c in channels],
@@ -173,7 +173,7 @@ def _packed(data: bytes) -> int:
 
 
 def _zfp(clip: Clip) -> Row | None:
-    """Code the (F, C) matrix of single-precision floats, as the paper has them."""
+    """Code the (F, C) matrix as single-precision floats, as the paper does."""
     try:
         zfpy: Any = import_module("zfpy")
     except ImportError:

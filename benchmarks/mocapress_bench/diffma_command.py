@@ -22,7 +22,7 @@ def diffma(
     force: Force = False,
     debug: Debug = False,  # noqa: ARG001
 ) -> None:
-    """Repeat the evaluation of DiffMA, beside zfp and LZMA, and measure what goes past it."""
+    """Repeat the evaluation of DiffMA, beside zfp and LZMA, and measure our extensions."""
     from mocapress.storage import write_whole
     from mocapress_bench.diffma import measure, speed
     from mocapress_bench.diffma_tables import report, speeds

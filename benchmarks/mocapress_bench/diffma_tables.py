@@ -115,7 +115,7 @@ def _contenders(rows: list[Row]) -> str:
 
 
 def _over_samples(rows: list[Row], key: str) -> float:
-    """Give the mean in which every sample, not every clip, counts alike."""
+    """Give the mean over samples, in which a long clip counts for more than a short one."""
     samples = [row["frames"] * row["channels"] for row in rows]
     return float(np.average([row[key] for row in rows], weights=samples))
 

@@ -1,4 +1,4 @@
-"""What the commands share: which clips to measure, and how far they have come."""
+"""Options and output that the commands share."""
 
 import sys
 from collections.abc import Callable
@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Annotated, NoReturn
 
 import typer
+
+from mocapress.formats import names, readable, suffixes
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 
@@ -24,17 +26,18 @@ Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks.", hidden=
 
 def clips_in(folder: Path) -> list[Path]:
     """Find the motion files below a folder."""
-    return sorted(p for p in folder.rglob("*") if p.suffix.lower() in (".amc", ".bvh"))
+    endings = suffixes(readable())
+    return sorted(path for path in folder.rglob("*") if path.name.lower().endswith(endings))
 
 
 def clips_named(corpus: Path | None) -> tuple[list[Path], Path]:
-    """Give the clips that a command is to measure, and the folder that their names start from."""
+    """Give the clips to measure, and the folder to which their names are relative."""
     folder = corpus or SAMPLES
     if corpus is None and not folder.is_dir():
         usage("name a folder of clips")
     paths = clips_in(folder) if folder.is_dir() else [folder]
     if not paths:
-        usage(f"no AMC or BVH files in {folder}")
+        usage(f"no {names(readable())} files in {folder}")
     return paths, folder if folder.is_dir() else folder.parent
 
 

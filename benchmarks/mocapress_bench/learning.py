@@ -1,4 +1,4 @@
-"""Codecs with models that were learned from other clips than those they are measured on."""
+"""Codecs with models that were learned from other clips than they are measured on."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -8,9 +8,9 @@ from pathlib import Path
 from mocapress.codecs import Codec, Model
 from mocapress.codecs.contract import Trainable
 from mocapress.errors import FormatError, ParameterError
-from mocapress.formats.files import read
 from mocapress.models import load_model, train
 from mocapress.motion import Clip
+from mocapress.source import Source, read
 from mocapress_bench.contenders import Tool, contenders
 from mocapress_bench.rivals import Rival
 
@@ -41,12 +41,13 @@ def cross_validated(
     paths
         All clips.
     only
-        As of ``contenders``; where empty, codecs with levels are taken at their strongest.
+        As in ``contenders``; if empty, codecs with levels are used at their strongest.
     folds
-        Folders are dealt to so many folds, in the order of their names; each fold's clips are
-        coded with a model of the other folds. At least as many as folders: one folder each.
+        Number of folds. Folders are dealt to folds in the order of their names, and each fold's
+        clips are coded with a model of the other folds. With at least as many folds as folders,
+        each fold is one folder.
     most_frames
-        Models learn from so many frames, of all the other folders in turn.
+        Number of frames that a model learns from, taken from all the other folders in turn.
 
     Raises
     ------
@@ -71,12 +72,12 @@ def cross_validated(
 
 
 def given(paths: Sequence[Path], only: str, file: Path) -> list[Learned]:
-    """Take a model from its file; that it has not seen these clips is up to who made it.
+    """Use a model from a file. The caller must know that it has not seen these clips.
 
     Raises
     ------
     ParameterError
-        When none of the codecs takes it.
+        When none of the codecs can use it.
 
     """
     model = load_model(file)
@@ -101,7 +102,7 @@ def _learners(only: str) -> dict[str, Codec]:
 
 
 def _bounded(paths: Sequence[Path], most_frames: int) -> Iterator[Clip]:
-    """Read clips, one of each folder in turn, until there are so many frames; the last is cut."""
+    """Read clips, one of each folder in turn, up to ``most_frames``; the last clip is cut."""
     by_folder: dict[Path, list[Path]] = {}
     for path in paths:
         by_folder.setdefault(path.parent, []).append(path)
@@ -110,8 +111,8 @@ def _bounded(paths: Sequence[Path], most_frames: int) -> Iterator[Clip]:
         if left <= 0:
             return
         try:
-            clip = read(path)
+            clip = read(Source(path))
         except FormatError:
             continue  # said when it is measured
-        yield clip.with_values(clip.values[:left])
+        yield clip[:left]
         left -= clip.frames

@@ -1,4 +1,4 @@
-"""``mocapress bench lossless``: every clip with every lossless codec and tool, in one run."""
+"""``mocapress bench lossless``: every clip, with every lossless codec and tool."""
 
 import hashlib
 import subprocess
@@ -13,11 +13,10 @@ import numpy as np
 from mocapress.codecs import Codec, Model, spec
 from mocapress.container import Kind, pack, pack_file, parse, unpack
 from mocapress.errors import FormatError
-from mocapress.formats import asf
-from mocapress.formats.files import find_asf, sniff, split
 from mocapress.formats.layout import Layout
 from mocapress.models import model_bytes
 from mocapress.restore import chunks_of
+from mocapress.source import Source
 from mocapress_bench.contenders import Tool, contenders
 from mocapress_bench.learning import Learned
 from mocapress_bench.rivals import Rival
@@ -40,8 +39,8 @@ def measure(
     Times are the best of ``repeat``. ``encode_us_per_frame`` and ``decode_us_per_frame`` are the
     codec's own work on the matrix (a tool's: its work on the file); ``compress_s`` and
     ``decompress_s`` are the whole way from file bytes to file bytes. ``counts`` says what
-    ``compressed_bytes`` stand for: the ``file``, or its ``values`` alone, without the text around
-    them. ``model_bytes`` are those of a model's file, once for all clips that share it.
+    ``compressed_bytes`` counts: the ``file``, or only its ``values``, without the text around
+    them. ``model_bytes`` is the size of a model's file, counted once for all clips that share it.
     """
     chosen, missing = contenders(only)
     notes = [f"not installed: {name}" for name in missing]
@@ -77,7 +76,7 @@ def measure(
 
 
 def peak_memory(path: Path, contender: str) -> dict[str, float]:
-    """Measure in a process of its own what compressing and restoring a file adds, MB."""
+    """Measure in a separate process how much memory compressing and restoring a file adds, MB."""
     done = subprocess.run(  # noqa: S603
         [sys.executable, "-m", "mocapress_bench.peak", str(path), contender],
         capture_output=True,
@@ -89,26 +88,20 @@ def peak_memory(path: Path, contender: str) -> dict[str, float]:
 
 
 def _shape(data: bytes, path: Path) -> Row:
-    kind = sniff(data, path.name)
-    if kind not in ("amc", "bvh"):
-        raise FormatError("not a motion file", file=str(path))
-    clip = split(data, kind, file=str(path)).clip
-    return {"format": kind, "frames": clip.frames, "channels": clip.channels}
+    source = Source(data, str(path))
+    clip = source.split().clip
+    return {"format": source.kind, "frames": clip.frames, "channels": clip.channels}
 
 
 def _codec_row(
     data: bytes, path: Path, codec: Codec, repeat: int, model: Model | None = None
 ) -> Row:
-    kind = sniff(data, path.name) or ""
-    beside = find_asf(path) if kind == "amc" else None
-    skeleton = asf.parse_asf(beside.read_bytes(), str(beside)) if beside else None
-    (clip, layout, _), split_s = _best(
-        lambda: split(data, kind, skeleton=skeleton, file=str(path)), repeat
-    )
+    source = Source(path)
+    (clip, layout, _), split_s = _best(source.split, repeat)
     encoded, encode_s = _best(lambda: codec.encode(clip, model=model), repeat)
     blob, pack_s = _best(
         lambda: pack_file(
-            kind=Kind[kind.upper()],
+            kind=Kind[layout.format.upper()],
             size=len(data),
             digest=hashlib.sha256(data).digest(),
             payloads=[(chunk.frames, chunk.restart, chunk.payload) for chunk in encoded.chunks],
@@ -150,8 +143,7 @@ def _open(blob: bytes) -> tuple[Any, Layout]:
 
 
 def _rival_row(data: bytes, path: Path, rival: Rival, repeat: int) -> Row:
-    kind = sniff(data, path.name) or ""
-    (clip, layout, _), split_s = _best(lambda: split(data, kind, file=str(path)), repeat)
+    (clip, layout, _), split_s = _best(lambda: Source(data, str(path)).split(), repeat)
     packed, encode_s = _best(lambda: rival.compress(clip.values), repeat)
     values, decode_s = _best(lambda: rival.decompress(packed, (clip.frames, clip.channels)), repeat)
     restored, join_s = _best(lambda: layout.join(values), repeat)

@@ -20,29 +20,30 @@ from mocapress_bench.inputs import (
 
 _FEW = 10
 Plots = Annotated[
-    Path | None, typer.Option("--plots", help="Draw the figures here.", metavar="FOLDER")
+    Path | None,
+    typer.Option("--plots", help="Draw the figures into this folder.", metavar="FOLDER"),
 ]
 Only = Annotated[
     str,
-    typer.Option("--only", help="Codecs, e.g. app:t=10, and tools; commas between."),
+    typer.Option("--only", help="Codecs, e.g. app:t=10, and tools, separated by commas."),
 ]
 Folds = Annotated[
     int | None,
     typer.Option(
         "--folds",
         min=2,
-        help="Measure codecs that learn with models, too: folders are dealt to N folds, each "
+        help="Also measure codecs with models, cross-validated: folders are dealt to N folds, each "
         "coded with a model of the others.",
         metavar="N",
     ),
 ]
 TrainFrames = Annotated[
-    int, typer.Option("--train-frames", min=1, help="Frames that each such model learns from.")
+    int, typer.Option("--train-frames", min=1, help="Frames that each of these models learns from.")
 ]
 ModelFile = Annotated[
-    Path | None, typer.Option("--model", help="Measure with this model, too.", metavar="FILE.mcm")
+    Path | None, typer.Option("--model", help="Also measure with this model.", metavar="FILE.mcm")
 ]
-Repeat = Annotated[int, typer.Option("--repeat", min=1, help="Take the best of N times.")]
+Repeat = Annotated[int, typer.Option("--repeat", min=1, help="Report the best of N runs.")]
 
 
 def lossless(

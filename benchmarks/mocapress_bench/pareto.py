@@ -26,7 +26,7 @@ class Point(NamedTuple):
 
 
 def points(rows: list[Row]) -> list[Point]:
-    """Sum up the contenders that restored everything, models counted."""
+    """Sum up the contenders that restored everything; models count."""
     found = []
     for codec, own in grouped(rows, "codec").items():
         raw = sum_of(own, "raw_bytes")
@@ -39,9 +39,9 @@ def points(rows: list[Row]) -> list[Point]:
 
 
 def front(found: list[Point]) -> list[Point]:
-    """Give those that no other beats in both ratio and speed, slowest first.
+    """Give the Pareto front: points that no other beats in both ratio and speed, slowest first.
 
-    Contenders that leave out a part of the file cannot be on it, nor keep others off it.
+    Contenders that leave out a part of the file are ignored.
     """
     best: list[Point] = []
     whole = [point for point in found if point.kind != "values"]
@@ -145,7 +145,7 @@ def _label(figure: Any, axes: Any, found: list[Point]) -> None:
 def place_names(
     middles: list[Offset], sizes: list[Offset], frame: Box, taken: list[Box]
 ) -> list[Offset]:
-    """Put names where they cover no point and no other name, as near to their points as it goes.
+    """Place names as near to their points as possible without covering points or other names.
 
     Parameters
     ----------

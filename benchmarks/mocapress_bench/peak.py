@@ -5,7 +5,7 @@ import resource
 import sys
 from pathlib import Path
 
-from mocapress.formats.files import sniff, split
+from mocapress.source import Source
 from mocapress_bench.contenders import Tool, contenders
 from mocapress_bench.rivals import Rival
 
@@ -18,7 +18,7 @@ def _peak() -> float:
 
 
 def _peak_of_commands() -> float:
-    """Give that of the largest command that was run, or of this process then, if that is more."""
+    """Give the peak of the largest command that was run (or of this process then, if larger)."""
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
 
 
@@ -30,7 +30,7 @@ def main(path: Path, name: str) -> None:
     if isinstance(contender, Tool):
         contender.decompress(contender.compress(data))
     else:
-        clip, layout, _ = split(data, sniff(data, path.name) or "")
+        clip, layout, _ = Source(data, path.name).split()
         if isinstance(contender, Rival):
             packed = contender.compress(clip.values)
             values = contender.decompress(packed, (clip.frames, clip.channels))

@@ -1,4 +1,4 @@
-"""Compressors of numbers: they see the matrix alone, not the text around it.
+"""Compressors of numbers, which see only the matrix and not the text around it.
 
 pcodec works on columns, fpzip and zfp (in its reversible mode) on the matrix of float64.
 """
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 Values = NDArray[np.float64]
 _MOST_DIGITS = 15
-"""Decimal numbers of so many digits are told apart by their doubles."""
+"""Decimal numbers with up to this many digits have different doubles."""
 _EXACT_POWER = 22
 """10 to this power is the largest that is exact in a double."""
 
@@ -29,7 +29,7 @@ class Rival:
 
 
 def fpzip() -> Rival:
-    """Give fpzip without loss; channels as rows, which it takes a little better."""
+    """Give fpzip without loss; channels as rows, which compress slightly better."""
     module: Any = import_module("fpzip")
 
     def decompress(data: bytes, shape: tuple[int, int]) -> Values:
@@ -60,9 +60,9 @@ def pcodec(*, grid: bool) -> Rival:
     Parameters
     ----------
     grid
-        Whether to try, beside the float64, whole numbers on the decimal grids that a column lies
-        on (``_grids``), each with the delta encoding that pcodec finds and with its differences
-        of orders 1 to 3. The smallest is kept.
+        Whether to try, besides the float64 values, their indices on the decimal grids that a
+        column lies on (``_grids``), each with the delta encoding that pcodec finds and with its
+        differences of orders 1 to 3. The smallest is kept.
 
     """
     module: Any = import_module("pcodec")
@@ -116,8 +116,8 @@ class _Grid(NamedTuple):
 def _grids(values: Values) -> Iterator[_Grid]:
     """Find the coarsest decimal grids that hold a column's values, (F,), all of them exactly.
 
-    ``_DECIMALS``: multiples of a power of ten. ``_SIGNIFICANT``: ranks among all numbers of so many
-    significant digits, as text of ``%g`` has them.
+    ``_DECIMALS``: multiples of a power of ten. ``_SIGNIFICANT``: ranks among all numbers with that
+    many significant digits, as ``%g`` prints them.
     """
     largest = float(np.abs(values).max(initial=0))
     for kind, from_values in ((_DECIMALS, _multiples), (_SIGNIFICANT, _ranks)):

@@ -9,13 +9,13 @@ Row = dict[str, Any]
 
 
 def markdown(header: list[str], rows: Iterable[list[str]]) -> str:
-    """Lay out a table; the first column on the left, numbers on the right."""
+    """Lay out a table: the first column left-aligned, the others right-aligned."""
     lines = ["| " + " | ".join(header) + " |", "|---" + "|---:" * (len(header) - 1) + "|"]
     return "\n".join([*lines, *("| " + " | ".join(row) + " |" for row in rows)]) + "\n"
 
 
 def totals(rows: list[Row], memory: dict[str, float] | None = None) -> str:
-    """Sum over all clips, one line per contender, strongest first; models are counted."""
+    """Sum over all clips, one line per contender, strongest first; models count."""
     lines = []
     models = any(row["model_bytes"] for row in rows)
     for codec, own in sorted(grouped(rows, "codec").items(), key=lambda item: -_ratio(item[1])):
@@ -62,7 +62,7 @@ def by_group(rows: list[Row]) -> str:
 
 
 def by_clip(rows: list[Row]) -> str:
-    """Give ratios per clip, one column per contender; models are not counted."""
+    """Give ratios per clip, one column per contender; models do not count."""
     names = [marked(codec, own) for codec, own in grouped(rows, "codec").items()]
     lines = [
         [clip, f"{own[0]['frames']}", f"{own[0]['raw_bytes']:,}"]
@@ -78,7 +78,7 @@ def marked(codec: str, rows: list[Row]) -> str:
 
 
 def stored(rows: list[Row]) -> float:
-    """Add up what must be kept to restore the files: compressed files and models."""
+    """Sum the bytes needed to restore the files: compressed files and models."""
     return sum_of(rows, "compressed_bytes") + float(sum(row["model_bytes"] for row in rows))
 
 

@@ -97,8 +97,8 @@ Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* 
   return side.finish();
 }
 
-void decode(ByteView payload, double* values, std::size_t frames, const Clip& clip) {
-  if (clip.level <= kFastLevels) return decode_fast(payload, values, frames, clip);
+void decode(ByteView payload, double* values, std::size_t frames, const Clip& clip, bool whole) {
+  if (clip.level <= kFastLevels) return decode_fast(payload, values, frames, clip, whole);
   RangeReading side(payload);
   for (const Part& part : parts(clip)) {
     if (!side.sound()) break;
@@ -108,7 +108,9 @@ void decode(ByteView payload, double* values, std::size_t frames, const Clip& cl
       model.code_frame(side, values + f * clip.columns.size() + part.from, false);
     }
   }
-  if (!side.exhausted()) throw std::invalid_argument("the payload does not decode");
+  if (whole ? !side.exhausted() : !side.sound()) {
+    throw std::invalid_argument("the payload does not decode");
+  }
 }
 
 }  // namespace mocapress::exact

@@ -14,6 +14,7 @@ inline constexpr int kFastLevels = 2;
 // is learned.
 Bytes encode_fast(const double* values, std::size_t frames, const Clip& clip, Start* learned);
 
-void decode_fast(ByteView payload, double* values, std::size_t frames, const Clip& clip);
+void decode_fast(ByteView payload, double* values, std::size_t frames, const Clip& clip,
+                 bool whole);
 
 }  // namespace mocapress::exact

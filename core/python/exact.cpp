@@ -113,12 +113,12 @@ std::tuple<nb::bytes, Learned> encode(const Input<double, 2>& values, const Exac
 }
 
 void decode(const nb::bytes& payload, const Output<double, 2>& values, const ExactPlan& plan,
-            const Couplings& couplings, int level, Learned start) {
+            const Couplings& couplings, int level, Learned start, bool whole) {
   const Told arguments(plan, values.shape(1), couplings, level,
                        {std::move(start.first), std::move(start.second)});
   const ByteView bytes = view(payload);
   nb::gil_scoped_release unlocked;
-  exact::decode(bytes, values.data(), values.shape(0), arguments.clip);
+  exact::decode(bytes, values.data(), values.shape(0), arguments.clip, whole);
 }
 
 std::vector<std::pair<int, int>> lines(const Input<double, 2>& values) {
@@ -198,7 +198,9 @@ void bind_exact(nb::module_& module) {
       "A plan has line, digits, noise, exponent, turns and place of each column, a coupling\n"
       "kind, sources, targets and parameters: see core/exact/codec.hpp.");
   module.def("exact_decode", &decode, nb::arg("payload"), nb::arg("values").noconvert(), plan,
-             couplings, level, start, "Fill ``values`` from a chunk; ValueError where it is none.");
+             couplings, level, start, nb::arg("whole"),
+             "Fill ``values`` from a chunk; ValueError where it is none.\n\n"
+             "Unless ``whole``, these are only the chunk's first frames.");
   module.def("exact_lines", &lines, values,
              "Give the coarsest line that holds each column, and its digits.");
   module.def(

@@ -71,8 +71,12 @@ def exact_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, Non
     kind, sources, targets and parameters: see core/exact/codec.hpp.
     """
 
-def exact_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 6), order='C', device='cpu', writable=False)], couplings: Sequence[tuple[int, Sequence[int], Sequence[int], Sequence[float]]], level: int, start: tuple[Sequence[float], Sequence[Sequence[float]]]) -> None:
-    """Fill ``values`` from a chunk; ValueError where it is none."""
+def exact_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 6), order='C', device='cpu', writable=False)], couplings: Sequence[tuple[int, Sequence[int], Sequence[int], Sequence[float]]], level: int, start: tuple[Sequence[float], Sequence[Sequence[float]]], whole: bool) -> None:
+    """
+    Fill ``values`` from a chunk; ValueError where it is none.
+
+    Unless ``whole``, these are only the chunk's first frames.
+    """
 
 def exact_lines(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> list[tuple[int, int]]:
     """Give the coarsest line that holds each column, and its digits."""

@@ -1,25 +1,26 @@
 """The Python interface: ``import mocapress as mp``."""
 
 import hashlib
-from contextlib import suppress
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from mocapress import codecs
+from mocapress import codecs, formats
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.codecs.fallback import first_that_works
 from mocapress.codecs.loss import Loss, checked_loss
 from mocapress.container import Kind, diffma_json, pack, pack_file, parse
-from mocapress.errors import CorruptError, FormatError, VerificationError
-from mocapress.formats import asf
-from mocapress.formats import files as motion_files
-from mocapress.formats.files import find_asf, format_clip, sniff, split
+from mocapress.errors import CorruptError, FormatError, UnsupportedError, VerificationError
+from mocapress.formats import Format, Split
 from mocapress.models import load_model
-from mocapress.motion import Clip, Skeleton, convert
+from mocapress.motion import Clip
+from mocapress.motion.convert import with_rate
 from mocapress.restore import chunks_of, decompress, load
+from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, Named, Source
+from mocapress.source import read as read_motion
 from mocapress.storage import write_whole
 
-__all__ = ["Compressed", "compress", "compress_bytes", "decompress", "load", "read", "write"]
+__all__ = ["Compressed", "compress", "compress_source", "decompress", "load", "read", "write"]
 
 # Below this size, or above this share of the original, the general-purpose way is tried as well.
 _SMALL = 2**15
@@ -28,7 +29,7 @@ _POOR = 0.4
 
 @dataclass(frozen=True, slots=True)
 class Compressed:
-    """What ``compress_bytes`` made."""
+    """What ``compress_source`` made."""
 
     blob: bytes
     """The ``.mcz`` file."""
@@ -39,7 +40,7 @@ class Compressed:
 
 
 def compress(
-    source: str | Path | bytes,
+    source: Named,
     codec: str | Codec = DEFAULT_CODEC,
     *,
     asf_path: str | Path | None = None,
@@ -51,7 +52,7 @@ def compress(
     Parameters
     ----------
     source
-        A path, or the contents of an AMC, BVH, ASF or any other file.
+        A path, the contents, or a binary stream, of a motion file or any other.
     codec
         A codec or its text, ``"app:t=15,table=k3-non-uniform"``.
     asf_path
@@ -66,61 +67,50 @@ def compress(
     -------
     bytes
         The ``.mcz`` file; it was decoded again and compared with the source. Where a codec fails,
-        another way is taken; ``compress_bytes`` says so.
+        another way is taken; ``compress_source`` says so.
 
     Raises
     ------
     ParameterError
         When there is no such codec, or it has no such parameter, or the model is not for it.
     FormatError
-        When the ASF cannot be read.
+        When the ASF that was given cannot be read.
 
     """
-    if isinstance(source, bytes):
-        data, name = source, ""
-    else:
-        data, name = Path(source).read_bytes(), str(source)
-        if asf_path is None and sniff(data, name) == "amc":
-            asf_path = find_asf(Path(source))
-    skeleton = Path(asf_path).read_bytes() if asf_path else b""
     if model is not None and not isinstance(model, Model):
         model = load_model(model)
-    return compress_bytes(
-        data, codec, name=name, asf_data=skeleton, embed_asf=embed_asf, model=model
-    ).blob
+    opened = Source(source)
+    return compress_source(opened, codec, asf_path=asf_path, embed_asf=embed_asf, model=model).blob
 
 
-def compress_bytes(
-    data: bytes,
+def compress_source(
+    source: Source,
     codec: str | Codec = DEFAULT_CODEC,
     *,
-    name: str = "",
-    asf_data: bytes = b"",
+    asf_path: str | Path | None = None,
     embed_asf: bool = False,
     model: Model | None = None,
 ) -> Compressed:
-    """Compress the contents of a file; see ``compress``. ``name`` is for messages."""
+    """Compress a file; see ``compress``."""
     made = codecs.codec(codec) if isinstance(codec, str) else codec
     if model is not None:
         codecs.learner(made, model)
-    skeleton = asf.parse_asf(asf_data) if asf_data else None
-    kind = sniff(data, name)
+    data = source.data
     blob, warning, loss = None, None, None
-    if kind in ("amc", "bvh"):
-        embedded = asf_data if embed_asf else b""
-        try:
-            blob, warning, loss = _compress_motion(
-                data, kind, made, skeleton, embedded, name, model
-            )
-        except FormatError as error:
-            warning = f"{error}; stored by a general-purpose compressor"
-            if skeleton is not None and not embed_asf:
-                # The ASF that lay beside may be another's.
-                with suppress(FormatError):
-                    blob, _, loss = _compress_motion(data, kind, made, None, b"", name, model)
-                    warning = f"{error}; compressed without a skeleton"
-    elif kind is None:
+    if source.format is None:
         warning = "not a motion file; stored by a general-purpose compressor"
+    elif source.format.split:
+        try:
+            parts = source.split(asf_path)
+        except FormatError as error:
+            if asf_path is not None and error.file == str(asf_path):
+                raise
+            warning = f"{error}; stored by a general-purpose compressor"
+        else:
+            embedded = source.used.read() if embed_asf and source.used else b""
+            if embedded:
+                source.warn_of_guess()
+            blob, warning, loss = _compress_motion(source, parts, made, embedded, model)
     if blob is None or len(data) < _SMALL or len(blob) > _POOR * len(data):
         plain = _compress_plain(data)
         if blob is None or len(plain) < len(blob):
@@ -129,16 +119,11 @@ def compress_bytes(
 
 
 def _compress_motion(
-    data: bytes,
-    kind: str,
-    codec: Codec,
-    skeleton: Skeleton | None,
-    embedded: bytes,
-    name: str,
-    model: Model | None,
+    source: Source, parts: Split, codec: Codec, embedded: bytes, model: Model | None
 ) -> tuple[bytes | None, str | None, Loss | None]:
-    clip, layout, problems = split(data, kind, skeleton=skeleton, file=name or None)
-    warning = "; ".join(str(problem.error(name or None)) for problem in problems) or None
+    clip, layout, problems = parts
+    data, name = source.data, source.name or None
+    warning = "; ".join(str(problem.error(name)) for problem in problems) or None
     if not clip.frames or layout.verbatim_bytes() + len(layout.tail) > len(data) / 2:
         reason = "numbers in no regular form" if clip.frames else "no frames"
         return None, warning or f"{reason}; stored by a general-purpose compressor", None
@@ -147,7 +132,7 @@ def _compress_motion(
         own = model if way is codec else None
         encoded = way.encode(clip, model=own)
         blob = pack_file(
-            kind=Kind[kind.upper()],
+            kind=Kind[layout.format.upper()],
             size=len(data),
             digest=hashlib.sha256(data).digest(),
             payloads=[(chunk.frames, chunk.restart, chunk.payload) for chunk in encoded.chunks],
@@ -189,15 +174,19 @@ def _compress_plain(data: bytes) -> bytes:
     )
 
 
-def read(path: str | Path, *, asf_path: str | Path | None = None, strict: bool = True) -> Clip:
-    """Read a motion file: AMC, BVH, ASF or DiffMA JSON.
+def read(source: Named, *, asf_path: str | Path | None = None, strict: bool = True) -> Clip:
+    """Read a motion file: of any format, or DiffMA JSON.
 
     Parameters
     ----------
-    path
-        An ASF alone gives a clip of its skeleton without frames.
+    source
+        A path, the contents, or a binary stream. A skeleton alone (ASF) gives a clip without
+        frames.
     asf_path
-        The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
+        The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one:
+        that of the same name, of the subject, or the only one in the folder, which is warned of.
+        ``metadata`` of the clip says which one was used (``skeleton``) and how it was found
+        (``skeleton_found``). One that is broken or does not fit is left away with a warning.
     strict
         Whether a file that has lost frames is refused: one with fewer rows than it declares, or
         with rows that cannot be read. With ``strict=False`` it is read as far as possible, with a
@@ -207,40 +196,77 @@ def read(path: str | Path, *, asf_path: str | Path | None = None, strict: bool =
     Raises
     ------
     FormatError
-        When the file does not follow its format: with file, place, expected and found.
+        When the file does not follow its format, or the given ASF cannot be read or is another's:
+        with file, place, expected and found.
     OSError
         When it cannot be opened.
 
     """
-    if diffma_json.is_json(b"", str(path)):
-        return diffma_json.json_to_clip(Path(path).read_bytes())
-    return motion_files.read(path, asf_path=asf_path, strict=strict)
+    return read_source(Source(source), asf_path, strict=strict)
 
 
-def write(clip: Clip, path: str | Path, *, force: bool = False) -> None:
-    """Write a clip as AMC, BVH or (``.diffma.json``, ``.diffma.json.xz``) DiffMA JSON.
+def read_source(source: Source, asf_path: str | Path | None = None, *, strict: bool = True) -> Clip:
+    """Read a motion file; see ``read``."""
+    if source.kind == DIFFMA_JSON:
+        return diffma_json.json_to_clip(source.data)
+    return read_motion(source, asf_path, strict=strict)
 
-    The clip is converted where its columns are those of the other format. Beside an AMC its
-    skeleton is written as an ASF of the same name.
+
+def write(
+    clip: Clip,
+    path: str | Path,
+    *,
+    to: str | None = None,
+    fps: float | None = None,
+    force: bool = False,
+) -> None:
+    """Write a clip to a motion file, or as DiffMA JSON.
+
+    The clip is converted to what the format can hold. What belongs beside the file is written,
+    too: the skeleton of an AMC as an ASF of the same name.
+
+    Parameters
+    ----------
+    clip
+        With a skeleton, except for formats that need none.
+    path
+        Its ending names the format.
+    to
+        Id of the format, whatever the ending.
+    fps
+        Frames per second, instead of those of the clip. A BVH has to state its frame time: where
+        neither the clip nor ``fps`` says it, 120 are assumed, with a ``MotionWarning``.
+    force
+        Whether to replace existing files.
 
     Raises
     ------
+    ParameterError
+        When ``fps`` is no number above 0.
     ExistsError
         When a file exists and ``force`` is not given.
     UnsupportedError
-        When the clip lacks what the format needs.
+        When there is no such format to write in, or the clip lacks what it needs.
 
     """
     path = Path(path)
-    if diffma_json.is_json(b"", path.name):
+    if to is None and path.name.lower().endswith(JSON_SUFFIXES):
+        clip = with_rate(clip, fps)
         write_whole(path, diffma_json.named(path.name, diffma_json.to_json(clip)), force=force)
         return
-    kind = path.suffix.lower()[1:]
-    if kind == "bvh":
-        clip = convert.to_bvh_clip(clip)
-    elif kind == "amc" and clip.skeleton is not None:
-        clip = convert.to_amc_clip(clip)
-    data = format_clip(clip, kind)
-    if kind == "amc" and clip.skeleton is not None:
-        write_whole(path.with_suffix(".asf"), asf.format_asf(clip.skeleton), force=force)
+    of = formats.by_id(to) if to else formats.by_name(path.name)
+    if of is None:
+        known = formats.names(formats.writable())
+        raise UnsupportedError("no format for clips", expected=known, found=repr(path.suffix))
+    (_, data), *beside = printed(with_rate(clip, fps, needed=of.timed), of).items()
+    for suffix, more in beside:
+        write_whole(path.with_suffix(suffix), more, force=force)
     write_whole(path, data, force=force)
+
+
+def printed(clip: Clip, of: Format) -> Mapping[str, bytes]:
+    """Print a clip in a format: contents by suffix, the file itself first."""
+    if of.write is None:
+        known = formats.names(formats.writable())
+        raise UnsupportedError("no format for clips", expected=known, found=of.name)
+    return of.write(of.fit(clip))

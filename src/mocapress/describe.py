@@ -11,15 +11,16 @@ from mocapress.errors import MissingModelError
 from mocapress.models import Place, find_model
 from mocapress.motion import Clip
 from mocapress.motion.convert import suggest_unit
-from mocapress.restore import chunks_of
+from mocapress.restore import chunks_of, load, load_source
+from mocapress.source import Source
 
 
 def describe_file(
-    path: Path, *, asf_path: Path | None = None, strict: bool = True
+    source: Source, *, asf_path: Path | None = None, strict: bool = True
 ) -> dict[str, Any]:
     """Describe a motion file."""
-    clip = api.read(path, asf_path=asf_path, strict=strict)
-    return {"bytes": path.stat().st_size, "format": path.suffix.lower()[1:]} | describe_clip(clip)
+    clip = api.read_source(source, asf_path, strict=strict)
+    return {"bytes": source.size, "format": source.kind} | describe_clip(clip)
 
 
 def describe_clip(clip: Clip, frames: int | None = None) -> dict[str, Any]:
@@ -39,6 +40,8 @@ def describe_clip(clip: Clip, frames: int | None = None) -> dict[str, Any]:
         "frame_time": None if clip.frame_time is None else str(clip.frame_time),
         "seconds": seconds,
         "joints": len(skeleton.joints) if skeleton else None,
+        "skeleton": clip.metadata.get("skeleton"),
+        "skeleton_found": clip.metadata.get("skeleton_found"),
         "number_formats": ", ".join(sorted(kinds)) or None,
         "unit_suggested": (suggest_unit(skeleton) or "nothing usual") if skeleton else None,
     }
@@ -78,7 +81,7 @@ def describe_json(blob: bytes) -> dict[str, Any]:
 
 
 def describe_mcz(
-    blob: bytes,
+    source: Source,
     *,
     asf_path: Path | None = None,
     models: Sequence[Place] = (),
@@ -89,6 +92,7 @@ def describe_mcz(
     Of codecs that measure themselves, the measures follow: MCR, TCR and APE of APP (Eqs. 11-13).
     A file whose model is missing is described without these.
     """
+    blob = source.data
     mcz = parse(blob)
     payloads = sum(entry.length for entry in mcz.index)
     facts: dict[str, Any] = {
@@ -107,13 +111,13 @@ def describe_mcz(
     }
     if mcz.kind is Kind.BYTES:
         return facts
-    columns = api.load(blob, slice(0), asf_path=asf_path, strict=strict)
+    columns = load_source(source, slice(0), asf_path=asf_path, strict=strict)
     facts |= describe_clip(columns, mcz.frames)
     if mcz.frames and mcz.columns:
         facts["bits_per_sample"] = 8 * len(blob) / (mcz.frames * mcz.columns)
     measure = getattr(codecs.codec(mcz.codec), "measure", None)
     if measure is not None and facts["model_found"] is not False:
-        clip = api.load(blob, asf_path=asf_path, models=models, strict=strict)
+        clip = columns.with_frames(load(blob, models=models).values, columns.frame_time)
         facts |= measure(clip, Encoded(mcz.codec_header, chunks_of(mcz)), mcz.size)
     return facts
 

@@ -83,11 +83,11 @@ class ParameterError(MocapressError):
 
 
 class MissingModelError(MocapressError):
-    """The model that a compressed file names is in none of the places where it was looked for."""
+    """The model that a compressed file needs was not found."""
 
 
 class MotionWarning(UserWarning):
-    """Something is not as it should be, or had to be assumed; nothing was refused.
+    """Something departs from the format, or had to be assumed; reading went on.
 
     Parameters
     ----------

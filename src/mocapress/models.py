@@ -11,8 +11,8 @@ from mocapress.codecs.fallback import naming_faults
 from mocapress.container import Mcm, pack_model, parse_model, peek_model
 from mocapress.container.mcm import LONGEST_FILE, LONGEST_HEADER
 from mocapress.errors import CorruptError, MissingModelError, MocapressError, ParameterError
-from mocapress.formats.files import read
 from mocapress.motion import Clip
+from mocapress.source import Named, Source, read
 from mocapress.storage import write_whole
 
 __all__ = ["Place", "find_model", "load_model", "model_bytes", "save_model", "train"]
@@ -24,13 +24,13 @@ Place = Model | str | Path
 """Where a model may be: it itself, its file, or a folder with ``.mcm`` files."""
 
 
-def train(sources: Iterable[str | Path | Clip], codec: str | Codec = DEFAULT_CODEC) -> Model:
+def train(sources: Iterable[Named | Clip], codec: str | Codec = DEFAULT_CODEC) -> Model:
     """Learn a model from clips, for compressing clips like these.
 
     Parameters
     ----------
     sources
-        Clips, or paths of AMC and BVH files; read one at a time.
+        Clips, or motion files: paths, contents or streams; read one at a time.
     codec
         A codec that learns, or its text.
 
@@ -46,7 +46,7 @@ def train(sources: Iterable[str | Path | Clip], codec: str | Codec = DEFAULT_COD
     """
     made = codecs.codec(codec) if isinstance(codec, str) else codec
     learner = codecs.learner(made)
-    clips = (source if isinstance(source, Clip) else read(source) for source in sources)
+    clips = (source if isinstance(source, Clip) else read(Source(source)) for source in sources)
     first = next(clips, None)
     if first is None:
         raise ParameterError("nothing to learn from", expected="at least one clip")

@@ -1,34 +1,33 @@
 """From compressed files back to the original files, and to clips."""
 
 import hashlib
-import mmap
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress import codecs
+from mocapress import codecs, formats
 from mocapress.codecs import Chunk, Codec, Model
 from mocapress.container import Kind, Mcz, diffma_json, parse, unpack
 from mocapress.errors import CorruptError, FormatError, ParameterError
-from mocapress.formats import asf
-from mocapress.formats.files import columns_of, find_asf, sniff, split
+from mocapress.formats import columns_of
 from mocapress.formats.layout import Layout
-from mocapress.formats.problems import report
 from mocapress.models import Place, find_model
-from mocapress.motion import Clip, Skeleton
+from mocapress.motion import Clip
+from mocapress.source import DIFFMA_JSON, Named, Source
 
-__all__ = ["chunks_of", "decompress", "load"]
+__all__ = ["chunks_of", "decompress", "load", "load_source"]
 
 
-def decompress(source: str | Path | bytes, *, models: Sequence[Place] = ()) -> bytes:
+def decompress(source: Named | Source, *, models: Sequence[Place] = ()) -> bytes:
     """Give the original file's bytes (for a lossy codec: the decoded values in its layout).
 
     Parameters
     ----------
     source
-        A ``.mcz`` or a DiffMA JSON, packed or not: a path or the file's bytes.
+        A ``.mcz`` or a DiffMA JSON, packed or not: a path, the file's bytes, or a stream.
     models
         Where to look for the model that the file may need: models, their files, or folders of
         them; then beside the file, then in the folders that ``MOCAPRESS_MODELS`` names.
@@ -41,14 +40,15 @@ def decompress(source: str | Path | bytes, *, models: Sequence[Place] = ()) -> b
         When the model that the file needs is nowhere.
 
     """
-    contents = _contents(source)
-    if diffma_json.is_json(contents):
-        return diffma_json.json_to_file(contents)[1]
-    mcz = parse(contents)
+    source = source if isinstance(source, Source) else Source(source)
+    if source.kind == DIFFMA_JSON:
+        return diffma_json.json_to_file(source.data)[1]
+    mcz = parse(source.data)
     if mcz.kind is Kind.BYTES:
         restored, lossless = unpack(mcz.payload(0), "contents", mcz.size), True
     else:
-        codec, layout, clip = _open(mcz, None)
+        codec, layout = _open(mcz)
+        clip = _columns(layout)
         lossless = codec.lossless
         model = _model(mcz, codec, source, models)
         values = _decode(mcz, codec, clip, 0, mcz.frames, model)
@@ -62,7 +62,7 @@ def decompress(source: str | Path | bytes, *, models: Sequence[Place] = ()) -> b
 
 
 def load(
-    source: str | Path | bytes,
+    source: Named,
     frames: slice | None = None,
     *,
     asf_path: str | Path | None = None,
@@ -74,11 +74,12 @@ def load(
     Parameters
     ----------
     source
-        A path or the file's bytes.
+        A path, the file's bytes, or a stream.
     frames
         Only these frames, e.g. ``slice(100, 200)``; just the chunks they lie in are decoded.
     asf_path
-        The skeleton of an AMC; without it, the one in the file, or the ASF beside it, is taken.
+        The skeleton of an AMC; without it, the one in the file, or the ASF beside it, is taken, as
+        by ``read``.
     models
         Where to look for the model that the file may need, as in ``decompress``.
     strict
@@ -95,55 +96,66 @@ def load(
         When the model that the file needs is nowhere.
 
     """
-    packed = _contents(source)
-    if diffma_json.is_json(packed):
-        clip = diffma_json.json_to_clip(packed)
-        return clip if frames is None else clip.with_values(clip.values[frames])
-    mcz = parse(packed)
-    skeleton = _skeleton(mcz, source, asf_path)
+    return load_source(Source(source), frames, asf_path=asf_path, models=models, strict=strict)
+
+
+def load_source(
+    source: Source,
+    frames: slice | None = None,
+    *,
+    asf_path: str | Path | None = None,
+    models: Sequence[Place] = (),
+    strict: bool = True,
+) -> Clip:
+    """Give a clip or some of its frames; see ``load``."""
+    if source.kind == DIFFMA_JSON:
+        clip = diffma_json.json_to_clip(source.data)
+        return clip if frames is None else clip[frames]
+    mcz = parse(source.data)
     if mcz.kind is Kind.BYTES:
         contents = decompress(source)
-        kind = sniff(contents)
-        if kind not in ("amc", "bvh"):
-            raise FormatError("no motion in this file", expected="AMC or BVH inside")
-        clip, _, problems = split(contents, kind, skeleton=skeleton)
-        file = None if isinstance(source, bytes) else str(source)
-        report(problems, file, strict=strict)
-        return clip if frames is None else clip.with_values(clip.values[frames])
-    codec, _, clip = _open(mcz, skeleton)
+        of = formats.recognise(contents)
+        if of is None or of.split is None:
+            expected = f"{formats.names(formats.readable())} inside"
+            raise FormatError("no motion in this file", expected=expected)
+        clip, _, problems = source.split(asf_path, of, contents)
+        source.accept(problems, strict=strict)
+        return clip if frames is None else clip[frames]
+    codec, layout = _open(mcz)
+    clip = _columns(layout, source, asf_path, mcz.skeleton)
+    source.warn_of_guess()
     rows = range(mcz.frames)[frames or slice(None)]
     if not rows:
-        return clip
+        return clip[:: rows.step]
     first, last = min(rows[0], rows[-1]), max(rows[0], rows[-1]) + 1
     model = _model(mcz, codec, source, models)
-    return clip.with_values(_decode(mcz, codec, clip, first, last, model)[:: rows.step])
+    decoded = _decode(mcz, codec, clip, first, last, model)
+    return clip.with_frames(decoded, clip.frame_time)[:: rows.step]
 
 
-def _contents(source: str | Path | bytes) -> memoryview:
-    if isinstance(source, bytes):
-        return memoryview(source)
-    with Path(source).open("rb") as file:
-        if Path(source).stat().st_size == 0:
-            return memoryview(b"")
-        return memoryview(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ))
+def _columns(
+    layout: Layout,
+    source: Source | None = None,
+    asf_path: str | Path | None = None,
+    skeleton: bytes = b"",
+) -> Clip:
+    """Give the clip without its frames; with the skeleton, where the source is given."""
+    try:
+        if source is None:
+            return columns_of(layout)
+        embedded = unpack(skeleton, "skeleton") if skeleton and asf_path is None else b""
+        of, make = formats.by_id(layout.format), partial(columns_of, layout)
+        return source.told(source.with_skeleton(of, make, asf_path, embedded))
+    except FormatError as error:
+        if error.file:
+            raise
+        raise CorruptError(f"layout: {error}") from error
 
 
-def _skeleton(mcz: Mcz, source: str | Path | bytes, asf_path: str | Path | None) -> Skeleton | None:
-    if asf_path is None and mcz.skeleton:
-        return asf.parse_asf(unpack(mcz.skeleton, "skeleton"))
-    if asf_path is None and not isinstance(source, bytes) and mcz.kind is not Kind.BVH:
-        asf_path = find_asf(Path(source).with_suffix(""))
-    return asf.parse_asf(Path(asf_path).read_bytes(), str(asf_path)) if asf_path else None
-
-
-def _model(
-    mcz: Mcz, codec: Codec, source: str | Path | bytes, places: Sequence[Place]
-) -> Model | None:
+def _model(mcz: Mcz, codec: Codec, source: Source, places: Sequence[Place]) -> Model | None:
     if not mcz.model:
         return None
-    model = find_model(
-        mcz.model, places, None if isinstance(source, bytes) else Path(source).parent
-    )
+    model = find_model(mcz.model, places, source.path.parent if source.path else None)
     try:
         codecs.learner(codec, model)
     except ParameterError as error:
@@ -151,8 +163,8 @@ def _model(
     return model
 
 
-def _open(mcz: Mcz, skeleton: Skeleton | None) -> tuple[Codec, Layout, Clip]:
-    """Read what decoding needs; the clip has no frames yet."""
+def _open(mcz: Mcz) -> tuple[Codec, Layout]:
+    """Read what decoding needs."""
     try:
         codec = codecs.codec(mcz.codec)
     except ParameterError as error:
@@ -165,10 +177,7 @@ def _open(mcz: Mcz, skeleton: Skeleton | None) -> tuple[Codec, Layout, Clip]:
         raise CorruptError(
             "layout: columns", expected=str(mcz.columns), found=str(len(layout.formats))
         )
-    try:
-        return codec, layout, columns_of(layout, skeleton)
-    except FormatError as error:
-        raise CorruptError(f"layout: {error}") from error
+    return codec, layout
 
 
 def chunks_of(

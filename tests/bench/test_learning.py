@@ -56,7 +56,7 @@ def test_models_learn_from_so_many_frames_of_all_folders(clips: list[Path]) -> N
     (learned,) = learning.cross_validated(clips, "learner", folds=9, most_frames=6)
     model = next(model for path, model in learned.models.items() if path.parent.name == "c")
     first, second = (mp.read(next(p for p in clips if p.parent.name == n)) for n in ("a", "b"))
-    assert model == mp.train([first, second.with_values(second.values[:2])], "learner")
+    assert model == mp.train([first, second[:2]], "learner")
 
 
 def test_one_folder_cannot_be_cross_validated(clips: list[Path]) -> None:

@@ -10,10 +10,17 @@ from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.codecs.exact import Exact
-from mocapress.codecs.exact.coupling import Coupling, CouplingKind, arrange, read_coupling
+from mocapress.codecs.exact.coupling import (
+    Coupling,
+    CouplingKind,
+    arrange,
+    read_couplings,
+    write_couplings,
+)
 from mocapress.codecs.exact.coupling_search import find_couplings
 from mocapress.errors import CorruptError
 from mocapress.motion import Clip, Column
+from mocapress.records import Reader, Writer
 
 Array = NDArray[np.float64]
 
@@ -153,14 +160,38 @@ def test_couplings_stay_within_a_part_of_the_columns() -> None:
     assert arrange(range(70000), [within, across, far])[1] == [within]
 
 
-def test_forged_couplings_are_refused() -> None:
-    from mocapress.records import Reader
+def any_list() -> st.SearchStrategy[list[Coupling]]:
+    return st.lists(any_coupling(12), max_size=5)
 
-    for data in (
-        b"\x08\x01\x00\x01\x01",  # no such kind
-        b"\x00\x07\x00\x01\x02\x03\x04\x05\x06\x01\x07",  # a polynomial of seven columns
-        b"\x03\x02\x00\x01\x01\x02",  # a thumb of one
-        b"\x00\x01\x00\x01\x00",  # one that follows from itself
-    ):
-        with pytest.raises(CorruptError):
-            read_coupling(Reader(data, "header"), 9)
+
+@given(any_list(), st.lists(st.integers(-(2**40), 2**40), min_size=5, max_size=5))
+def test_couplings_travel_in_the_header(couplings: list[Coupling], numbers: list[int]) -> None:
+    joint = Coupling(CouplingKind.JOINT, (7, 6), (8,), (21 + 27 * 5 + 486, 40, *numbers))
+    adjacent = Coupling(CouplingKind.POLYNOMIAL, (3, 4, 5, 6), (7, 8))
+    writer = Writer()
+    write_couplings(writer, [*couplings, joint, adjacent])
+    reader = Reader(bytes(writer.data), "header")
+    assert read_couplings(reader) == [*couplings, joint, adjacent]
+    reader.end()
+
+
+def test_couplings_of_neighbours_take_few_bytes() -> None:
+    writer = Writer()
+    write_couplings(writer, [Coupling(CouplingKind.SPINE, (6, 7, 8, 9, 10, 11), (13, 12, 14))])
+    assert writer.data == b"\x01\x02\x06"
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"\x01\x10\x00",  # no such kind
+        b"\x01\x00\x07\x01\x00",  # a polynomial of seven columns
+        b"\x01\x00\x00\x01\x00",  # of none
+        b"\x01\x07\x00\x01\x02\x02",  # a thumb with a target twice
+        b"\x01\x0a\x00\x02",  # a joint whose source is its target
+        b"\x09\x02\x00",  # eight more than there are
+    ],
+)
+def test_forged_couplings_are_refused(data: bytes) -> None:
+    with pytest.raises(CorruptError):
+        read_couplings(Reader(data, "header"))

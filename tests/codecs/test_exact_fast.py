@@ -43,7 +43,7 @@ def payload_of(values: Values, told: NDArray[np.int32], level: int) -> bytes:
 
 def decoded(payload: bytes, shape: tuple[int, ...], told: NDArray[np.int32], level: int) -> Values:
     values = np.empty(shape)
-    _core.exact_decode(payload, values, told, [], level, ([], []))
+    _core.exact_decode(payload, values, told, [], level, ([], []), True)
     return values
 
 

@@ -145,7 +145,7 @@ def test_the_samples_have_columns_that_jump_by_whole_turns(samples: Path) -> Non
 
 def payload(clip: Clip, roles: Roles) -> int:
     rows = np.ascontiguousarray(clip.values[:, roles.coded])
-    plan, couplings = roles.plan(roles.coded), roles.coupled()
+    plan, couplings = roles.plan(roles.coded), roles.coupled(roles.coded)
     return len(
         _core.exact_encode(rows, plan, couplings, 9, ([], [[]] * len(roles.coded)), False)[0]
     )

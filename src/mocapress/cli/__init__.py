@@ -1,5 +1,8 @@
 """The command ``mocapress``. Imports little, so that ``--help`` is quick."""
 
+import errno
+import io
+import os
 import sys
 
 
@@ -7,10 +10,18 @@ def main() -> None:
     """Run the command line; no traceback reaches a user who has not asked for one."""
     from mocapress.cli.app import app
 
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # Names of files need not be UTF-8: they go out as they came in.
+        sys.stdout.reconfigure(errors="surrogateescape")
     debug = "--debug" in sys.argv[1:]
     try:
-        app(prog_name="mocapress")
+        try:
+            app(prog_name="mocapress")
+        finally:
+            sys.stdout.flush()
     except Exception as error:
+        if isinstance(error, OSError) and error.filename is None:
+            _end_stdout(error)
         if debug:
             raise
         print(
@@ -19,3 +30,12 @@ def main() -> None:
             file=sys.stderr,
         )
         sys.exit(70)
+
+
+def _end_stdout(error: OSError) -> None:
+    """End where stdout takes no more; a reader that has gone away has had enough."""
+    # What is still in the buffer must not be tried again when Python ends.
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    if error.errno != errno.EPIPE:
+        print(f"mocapress: standard output: {error.strerror}", file=sys.stderr)
+    sys.exit(1)

@@ -1,38 +1,57 @@
-"""Running a command over many files: finding them, working in parallel, reporting."""
+"""Running a command over many files: finding them, working in parallel, storing, reporting."""
 
-import json as jsonlib
+import os
+import queue
+import signal
 import sys
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import typer
 
+from mocapress.cli.report import Report
 from mocapress.cli.warned import collecting, kept
-from mocapress.errors import MocapressError, MotionWarning, ParameterError
+from mocapress.errors import MotionWarning
+from mocapress.storage import check_targets, is_stream, write_all
+
+if TYPE_CHECKING:
+    from mocapress.source import Source
 
 STREAM = Path("-")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False)
 class Job:
-    """One file to work on: ``source`` is ``-`` for stdin."""
+    """One file: what is to be done with it, and what came of that."""
 
     source: Path
+    """``-`` is stdin."""
     base: Path
     """The folder that was named, or the file's own: outputs keep the path from here."""
-
-
-@dataclass(slots=True)
-class Outcome:
-    """What came of one file."""
-
-    source: Path
+    in_folder: bool = False
+    """Whether it was found in a folder that was named."""
+    target: Path | None = None
+    """Where the output goes, if there is one; ``-`` is stdout."""
+    force: bool = False
+    """Whether files that exist are replaced."""
+    times: bool = True
+    """Whether outputs get the source's modification time; they always get its permissions."""
+    outputs: dict[Path, bytes] = field(default_factory=dict)
+    """What was made and is to be stored, all of it or nothing."""
     result: dict[str, Any] = field(default_factory=dict)
-    error: MocapressError | OSError | MemoryError | None = None
+    error: Exception | None = None
     warnings: list[MotionWarning] = field(default_factory=list)
+
+    def opened(self) -> "Source":
+        """Open the file, or stdin."""
+        from mocapress.source import Source
+
+        return Source(sys.stdin.buffer) if self.source == STREAM else Source(self.source)
 
 
 def find(inputs: Sequence[Path], suffixes: tuple[str, ...]) -> list[Job]:
@@ -40,11 +59,7 @@ def find(inputs: Sequence[Path], suffixes: tuple[str, ...]) -> list[Job]:
     jobs = []
     for path in inputs:
         if path != STREAM and path.is_dir():
-            jobs += [
-                Job(found, path)
-                for found in sorted(path.rglob("*"))
-                if found.name.lower().endswith(suffixes) and found.is_file()
-            ]
+            jobs += [Job(found, path, in_folder=True) for found in _below(path, suffixes)]
         else:
             jobs.append(Job(path, path.parent))
     if not jobs:
@@ -54,121 +69,182 @@ def find(inputs: Sequence[Path], suffixes: tuple[str, ...]) -> list[Job]:
     return jobs
 
 
+def _below(folder: Path, suffixes: tuple[str, ...]) -> list[Path]:
+    found, unreadable = [], []
+    # A folder that cannot be read becomes a job that fails; it must not be missed in silence.
+    for place, _, names in os.walk(
+        folder, onerror=lambda error: unreadable.append(Path(error.filename))
+    ):
+        paths = [Path(place, name) for name in names if name.lower().endswith(suffixes)]
+        found += [path for path in paths if path.is_file()]
+    return sorted([*found, *unreadable])
+
+
 def usage(message: str) -> NoReturn:
     """End with the exit code of wrong usage."""
     typer.echo(f"mocapress: {message}", err=True)
     raise typer.Exit(2)
 
 
-def contents(path: Path) -> bytes:
-    """Read a job's file, or stdin."""
-    return sys.stdin.buffer.read() if path == STREAM else path.read_bytes()
-
-
-def target(job: Job, output: Path | None, rename: Callable[[Path], Path], *, many: bool) -> Path:
-    """Say where a job's output goes; ``rename`` gives the name where none was asked for."""
-    if output == STREAM or (output is None and job.source == STREAM):
-        if many:
-            usage("stdout cannot take many outputs")
-        return STREAM
-    if output is None:
-        return rename(job.source)
-    if many or output.is_dir() or str(output).endswith("/"):
-        return output / rename(job.source).relative_to(job.base)
-    return output
-
-
 def run(
     jobs: Sequence[Job],
     work: Callable[[Job], dict[str, Any]],
     *,
-    threads: int,
+    threads: int = 1,
     json: bool,
-    show: Callable[[list[Outcome]], None],
+    show: Callable[[Job], None],
+    total: Callable[[list[Job]], None] | None = None,
     failure_code: int = 1,
+    debug: bool = False,
 ) -> None:
-    """Work on all jobs; report results and errors; end with the exit code."""
-    with collecting():
-        outcomes = _work_all(jobs, work, threads)
-    failed = [outcome for outcome in outcomes if outcome.error]
-    if json:
-        rows = [
-            {"file": str(outcome.source)}
-            | (_as_dict(outcome) if outcome.error else outcome.result)
-            | {"warnings": [warning.as_dict() for warning in outcome.warnings]}
-            for outcome in outcomes
-        ]
-        typer.echo(jsonlib.dumps(rows, indent=1))
-    else:
-        done = [outcome for outcome in outcomes if not outcome.error]
-        for outcome in outcomes:
-            for warning in outcome.warnings:
-                typer.echo(f"mocapress: warning: {warning}", err=True)
-        for outcome in done:
-            if outcome.result.get("warning"):
-                typer.echo(f"mocapress: warning: {_with_file(outcome)}", err=True)
-        if done:
-            show(done)
-        for outcome in failed:
-            typer.echo(f"mocapress: {_message(outcome)}", err=True)
-    if failed:
-        parameters = all(isinstance(outcome.error, ParameterError) for outcome in failed)
-        raise typer.Exit(2 if parameters else failure_code)
+    """Work on all jobs, report each as it is done, and end with the exit code.
 
+    Parameters
+    ----------
+    jobs
+        With their targets, where there are outputs.
+    work
+        Gives the facts of a job's result, and leaves what is to be stored in ``outputs``.
+    threads
+        Jobs at a time.
+    json
+        Whether results are reported as JSON.
+    show, total
+        Print a result, and the sum of several.
+    failure_code
+        Of inputs that are bad.
+    debug
+        Whether errors come with their tracebacks.
 
-def _work_all(
-    jobs: Sequence[Job], work: Callable[[Job], dict[str, Any]], threads: int
-) -> list[Outcome]:
-    outcomes = [Outcome(job.source) for job in jobs]
+    """
+    report = Report(json=json, show=show, failure_code=failure_code, debug=debug)
+    done: queue.SimpleQueue[Job | int] = queue.SimpleQueue()
+    storing = _Storing()
 
-    def one(index: int) -> None:
+    def one(job: Job) -> None:
         try:
-            outcomes[index].result = work(jobs[index])
-        except (MocapressError, OSError, MemoryError) as error:
-            outcomes[index].error = error
-        outcomes[index].warnings = kept()
+            if job.error is None:
+                job.result = _worked(job, work, storing)
+        except Exception as error:  # noqa: BLE001 - whatever it is, it must not stop the others
+            job.error = error
+        finally:
+            job.warnings = kept()
+            job.outputs.clear()
+            done.put(job)
 
-    if len(jobs) == 1:
-        one(0)
-        return outcomes
+    pool = ThreadPoolExecutor(threads)
+    try:
+        with collecting(), _signals(done.put), _bar(len(jobs)) as advance:
+            for job in jobs:
+                pool.submit(one, job)
+            for _ in jobs:
+                told = done.get()
+                if isinstance(told, int):
+                    _stop(told, jobs, done, storing, report)
+                report.add(told)
+                advance()
+    finally:
+        pool.shutdown(cancel_futures=True)
+    report.end(total)
+
+
+class _Storing:
+    """The jobs that are storing their outputs just now; none begins once this is closed."""
+
+    def __init__(self) -> None:
+        self.lock = threading.Lock()
+        self.closed = False
+        self.begun: set[Job] = set()
+
+    def begin(self, job: Job) -> None:
+        with self.lock:
+            if self.closed:
+                threading.Event().wait()  # until the process ends
+            self.begun.add(job)
+
+    def close(self) -> set[Job]:
+        with self.lock:
+            self.closed = True
+            return {*self.begun}
+
+
+def _worked(job: Job, work: Callable[[Job], dict[str, Any]], storing: _Storing) -> dict[str, Any]:
+    files = job.target is not None and job.target != STREAM
+    like = None
+    if files:
+        assert job.target is not None
+        check_targets([job.target], force=job.force)
+        like = None if job.source in (STREAM, job.target) else job.source.stat()
+    result = work(job)
+    if not files:
+        for data in job.outputs.values():
+            _to_stdout(data)
+    elif job.outputs:
+        for path in job.outputs:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        if not any(is_stream(path) for path in job.outputs):  # a FIFO may never be read
+            storing.begin(job)
+        write_all(job.outputs, force=job.force, like=like, times=job.times)
+    return result
+
+
+def _to_stdout(data: bytes) -> None:
+    """Write past the buffer, which would try again at the end what has failed."""
+    stdout = getattr(sys.stdout.buffer, "raw", sys.stdout.buffer)
+    rest = memoryview(data)
+    try:
+        while rest:
+            rest = rest[stdout.write(rest) :]
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, "standard output") from error
+
+
+def _stop(
+    signal_number: int,
+    jobs: Sequence[Job],
+    done: "queue.SimpleQueue[Job | int]",
+    storing: _Storing,
+    report: Report,
+) -> NoReturn:
+    """Let what is being stored be stored, report it, and end whatever else is running."""
+    waited = storing.close() - report.reported
+    while waited or not done.empty():
+        job = done.get()
+        if isinstance(job, int):  # asked twice
+            break
+        report.add(job)
+        waited.discard(job)
+    report.interrupt(len(jobs))
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(128 + signal_number)
+
+
+@contextmanager
+def _signals(put: Callable[[int], None]) -> Iterator[None]:
+    """Have signals that end the process told as a number first; those ignored stay so."""
+    before = {}
+    if threading.current_thread() is threading.main_thread():
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            if signal.getsignal(number) not in (signal.SIG_IGN, None):
+                before[number] = signal.signal(number, lambda number, _: put(number))
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@contextmanager
+def _bar(jobs: int) -> Iterator[Callable[[], None]]:
+    """Show progress on a terminal, unless it is there that the results appear."""
+    if jobs == 1 or not sys.stderr.isatty() or sys.stdout.isatty():
+        yield lambda: None
+        return
     from rich.console import Console
     from rich.progress import Progress
 
-    with (
-        Progress(
-            console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()
-        ) as bar,
-        ThreadPoolExecutor(threads) as pool,
-    ):
-        task = bar.add_task("", total=len(jobs))
-        futures = [pool.submit(one, index) for index in range(len(jobs))]
-        try:
-            for future in as_completed(futures):
-                future.result()
-                bar.advance(task)
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
-    return outcomes
-
-
-def _with_file(outcome: Outcome) -> str:
-    text, name = str(outcome.result["warning"]), str(outcome.source)
-    return text if text.startswith(name) else f"{name}: {text}"
-
-
-def _message(outcome: Outcome) -> str:
-    error, name = outcome.error, str(outcome.source)
-    if isinstance(error, OSError):
-        text = f"{error.filename or name}: {error.strerror or error}"
-    elif isinstance(error, MemoryError):
-        text = "not enough memory"
-    else:
-        text = str(error)
-    return text if name == "-" or name in text else f"{name}: {text}"
-
-
-def _as_dict(outcome: Outcome) -> dict[str, Any]:
-    if isinstance(outcome.error, MocapressError):
-        return outcome.error.as_dict() | {"file": str(outcome.source)}
-    return {"error": type(outcome.error).__name__, "what": _message(outcome)}
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, redirect_stdout=False) as bar:
+        task = bar.add_task("", total=jobs)
+        yield lambda: bar.advance(task)

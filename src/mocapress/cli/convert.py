@@ -1,87 +1,145 @@
 """``convert``."""
 
-import sys
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from mocapress import api
-from mocapress.cli.batch import STREAM, Job, Outcome, find, run, target, usage
-from mocapress.cli.models import open_models
-from mocapress.container import diffma_json
-from mocapress.errors import ParameterError, UnsupportedError
-from mocapress.formats.files import format_clip
-from mocapress.models import Place
-from mocapress.motion import Clip, convert
+import typer
+
+from mocapress.cli.options import (
+    Asf,
+    Debug,
+    Force,
+    Inputs,
+    Jobs,
+    Json,
+    Lenient,
+    Models,
+    Output,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from mocapress.cli.batch import Job
+    from mocapress.formats import Format
+    from mocapress.models import Place
+    from mocapress.motion import Clip
+    from mocapress.source import Source
 
 
-def convert_files(
-    inputs: Sequence[Path],
-    output: Path | None,
-    to: str | None,
-    *,
-    asf: Path | None,
-    models: Sequence[Path],
-    fps: float | None,
-    strict: bool,
-    jobs: int,
-    force: bool,
-    json: bool,
+def convert(
+    inputs: Inputs,
+    output: Output = None,
+    to: Annotated[
+        str | None,
+        typer.Option("--to", help="Format, e.g. bvh or amc; else what the output's name says."),
+    ] = None,
+    asf: Asf = None,
+    models: Models = None,
+    fps: Annotated[
+        float | None,
+        typer.Option(
+            "--fps", help="Frames per second, instead of those that the file states.", min=1e-3
+        ),
+    ] = None,
+    lenient: Lenient = False,
+    jobs: Jobs = 1,
+    force: Force = False,
+    json: Json = False,
+    debug: Debug = False,
 ) -> None:
-    """Convert files; ``.mcz`` and DiffMA JSON are taken, too."""
-    to = to or _kind_of(output)
-    files = find(inputs, (".amc",) if to == "bvh" else (".bvh",))
-    given = open_models(models)
+    """Convert between AMC with ASF and BVH; joint positions stay, nothing is rescaled."""
+    from mocapress import api
+    from mocapress.cli.batch import STREAM, find, run
+    from mocapress.cli.models import open_models, places_for
+    from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
+    from mocapress.container import diffma_json
+    from mocapress.formats import readable, suffixes
+    from mocapress.motion.convert import with_rate
+
+    made = _format(to, output)
+    refuse_other_kinds(output, made.suffixes, known_endings())
+    given = open_models(models or [])
 
     def rename(source: Path) -> Path:
         packed = source.suffix.lower() == ".mcz"
         name = diffma_json.stem(source.stem if packed else source.name)
-        return source.with_name(
-            f"{Path(name).stem if packed or name == source.name else name}.{to}"
-        )
+        kept = Path(name).stem if packed or name == source.name else name
+        return source.with_name(f"{kept}{made.suffixes[0]}")
 
-    def work(job: Job) -> dict[str, Any]:
-        place = target(job, output, rename, many=len(files) > 1)
-        clip = _read(job.source, asf, given, strict=strict)
-        warning = None
-        if to == "bvh":
-            if clip.frame_time is None and fps is None:
-                warning = f"an AMC does not say its frame rate; taken as {convert.DEFAULT_FPS:g}"
-            clip = convert.to_bvh_clip(clip, fps)
-        result = {"output": str(place), "frames": clip.frames, "warning": warning}
-        if place == STREAM:
-            made = clip if to == "bvh" else convert.to_amc_clip(clip)
-            sys.stdout.buffer.write(format_clip(made, to))
-        else:
-            place.parent.mkdir(parents=True, exist_ok=True)
-            api.write(clip, place, force=force)
-        return result
+    files = plan(
+        find(inputs, suffixes(of for of in readable() if of is not made)),
+        output,
+        rename,
+        force=force,
+        json=json,
+        reads=[asf, *(models or [])],
+    )
 
-    run(files, work, threads=jobs, json=json, show=_show)
+    def work(job: "Job") -> dict[str, Any]:
+        assert job.target is not None
+        job.times = False  # what is written is new
+        source = job.opened()
+        clip = _read(source, asf, places_for(job, given), strict=not lenient)
+        clip = with_rate(clip, fps, needed=made.timed)
+        (_, data), *beside = api.printed(clip, made).items()
+        job.outputs[job.target] = data
+        if job.target != STREAM:
+            job.outputs |= {job.target.with_suffix(suffix): more for suffix, more in beside}
+            _keep_skeleton(job, source)
+        return {
+            "output": str(job.target),
+            "frames": clip.frames,
+            "skeleton": clip.metadata.get("skeleton"),
+            "skeleton_found": clip.metadata.get("skeleton_found"),
+        }
+
+    run(files, work, threads=jobs, json=json, show=_show, debug=debug)
 
 
-def _kind_of(output: Path | None) -> str:
-    kind = output.suffix.lower()[1:] if output else ""
-    if kind not in ("bvh", "amc"):
-        usage("say what to convert to: --to, or an output that ends in .bvh or .amc")
-    return kind
+def _format(to: str | None, output: str | None) -> "Format":
+    from mocapress.cli.batch import usage
+    from mocapress.formats import by_name, writable
+
+    known = [of for of in writable() if to is None or of.id == to]
+    named = by_name(output) if output else None
+    found = (known[0] if known else None) if to else named
+    if found is None or found not in known:
+        ids = ", ".join(of.id for of in writable())
+        usage(f"say what to convert to: --to ({ids}), or an output with the ending of one of these")
+    return found
 
 
-def _read(source: Path, asf: Path | None, models: Sequence[Place], *, strict: bool) -> Clip:
-    if source == STREAM:
-        raise ParameterError("convert reads files, not stdin")
-    if source.suffix.lower() == ".mcz":
-        clip = api.load(source, asf_path=asf, models=models, strict=strict)
+def _read(source: "Source", asf: Path | None, models: "Sequence[Place]", *, strict: bool) -> "Clip":
+    from mocapress import api
+    from mocapress.errors import UnsupportedError
+    from mocapress.restore import load_source
+    from mocapress.source import MCZ
+
+    if source.kind == MCZ:
+        clip = load_source(source, asf_path=asf, models=models, strict=strict)
     else:
-        clip = api.read(source, asf_path=asf, strict=strict)
+        clip = api.read_source(source, asf, strict=strict)
     if clip.skeleton is None:
         raise UnsupportedError(
-            "no skeleton", file=str(source), expected="an ASF beside it, or --asf"
+            "no skeleton", file=source.name or None, expected="one beside it, or --asf"
         )
     return clip
 
 
-def _show(outcomes: list[Outcome]) -> None:
-    for outcome in outcomes:
-        if outcome.result["output"] != str(STREAM):
-            print(f"{outcome.result['output']}: {outcome.result['frames']} frames")
+def _keep_skeleton(job: "Job", source: "Source") -> None:
+    """Refuse to replace the skeleton that the clip was read with, as it says more than ours."""
+    from mocapress.errors import ParameterError
+
+    for path in job.outputs:
+        used = source.used and Path(source.used.file)
+        if used and used.exists() and path.exists() and path.samefile(used):
+            raise ParameterError(
+                f"{path} would replace the skeleton that this was read with",
+                expected="another output: -o",
+            )
+
+
+def _show(job: "Job") -> None:
+    if str(job.target) != "-":
+        print(f"{job.target}: {job.result['frames']} frames")

@@ -1,55 +1,57 @@
 """``info``."""
 
-from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from mocapress import describe
-from mocapress.cli.batch import STREAM, Job, Outcome, contents, find, run
-from mocapress.cli.models import open_models, places_for
-from mocapress.container import diffma_json, mcm, mcz
-from mocapress.formats.files import find_asf
-from mocapress.models import load_model
+from mocapress.cli.options import Asf, Debug, Inputs, Jobs, Json, Lenient, Models
+
+if TYPE_CHECKING:
+    from mocapress.cli.batch import Job
 
 
-def show_info(
-    inputs: Sequence[Path],
-    *,
-    asf: Path | None,
-    models: Sequence[Path],
-    strict: bool,
-    jobs: int,
-    json: bool,
+def info(
+    inputs: Inputs,
+    asf: Asf = None,
+    models: Models = None,
+    lenient: Lenient = False,
+    jobs: Jobs = 1,
+    json: Json = False,
+    debug: Debug = False,
 ) -> None:
-    """Describe motion files, compressed files and models."""
-    files = find(inputs, (".amc", ".bvh", ".asf", ".mcz", ".mcm", *diffma_json.SUFFIXES))
-    given = open_models(models)
+    """Say what is in motion files, compressed files and models."""
+    from mocapress import describe
+    from mocapress.cli.batch import find, run
+    from mocapress.cli.models import open_models, places_for
+    from mocapress.formats import formats, suffixes
+    from mocapress.models import load_model
+    from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, MCM, MCZ
 
-    def work(job: Job) -> dict[str, Any]:
-        data = contents(job.source)
-        if data[:4] == mcz.MAGIC:
-            beside = find_asf(job.source.with_suffix("")) if job.source != STREAM else None
-            models = places_for(job, given)
-            return describe.describe_mcz(data, asf_path=asf or beside, models=models, strict=strict)
-        if data[:4] == mcm.MAGIC:
-            return describe.describe_model(load_model(data), len(data))
-        if diffma_json.is_json(data, job.source.name):
-            return describe.describe_json(data)
-        return describe.describe_file(job.source, asf_path=asf, strict=strict)
+    files = find(inputs, (*suffixes(formats()), ".mcz", ".mcm", *JSON_SUFFIXES))
+    given = open_models(models or [])
+    strict = not lenient
 
-    def show(outcomes: list[Outcome]) -> None:
-        from rich.console import Console
-        from rich.table import Table
+    def work(job: "Job") -> dict[str, Any]:
+        source = job.opened()
+        if source.kind == MCZ:
+            places = places_for(job, given)
+            return describe.describe_mcz(source, asf_path=asf, models=places, strict=strict)
+        if source.kind == MCM:
+            return describe.describe_model(load_model(source.data), source.size)
+        if source.kind == DIFFMA_JSON:
+            return describe.describe_json(source.data)
+        return describe.describe_file(source, asf_path=asf, strict=strict)
 
-        console = Console()
-        for outcome in outcomes:
-            table = Table(title=str(outcome.source), show_header=False, title_justify="left")
-            for key, value in outcome.result.items():
-                if value is not None:
-                    table.add_row(key.replace("_", " "), _text(value))
-            console.print(table)
+    run(files, work, threads=jobs, json=json, show=_show, debug=debug)
 
-    run(files, work, threads=jobs, json=json, show=show)
+
+def _show(job: "Job") -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title=str(job.source), show_header=False, title_justify="left")
+    for key, value in job.result.items():
+        if value is not None and key != "warning":
+            table.add_row(key.replace("_", " "), _text(value))
+    Console().print(table)
 
 
 def _text(value: Any) -> str:

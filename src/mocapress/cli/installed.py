@@ -12,7 +12,7 @@ _KNOWN = {"bench": "mocapress-bench"}
 
 
 class Commands(TyperGroup):
-    """Our own commands, and after them those of other packages."""
+    """Our own commands, then those of other packages."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Name all commands."""
@@ -20,7 +20,7 @@ class Commands(TyperGroup):
         return [*own, *sorted(_installed().keys() - set(own))]
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Give a command; of another package it is loaded only now."""
+        """Give a command; one of another package is loaded only now."""
         own = super().get_command(ctx, cmd_name)
         if own is not None:
             return own

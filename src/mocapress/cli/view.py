@@ -1,53 +1,84 @@
 """``view``."""
 
-import webbrowser
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
 
 import typer
 
-from mocapress.cli.batch import usage
-from mocapress.cli.warned import collecting, kept
-from mocapress.errors import MocapressError
-from mocapress.storage import write_whole
-from mocapress.viewer import embed, page
-from mocapress.viewer.server import PageServer
+from mocapress.cli.options import Asf, Debug, Force, Lenient
 
 
-def view_files(
-    inputs: Sequence[Path],
-    *,
-    export: Path | None,
-    lossless: bool,
-    max_error: float,
-    asf: Path | None,
-    port: int,
-    browser: bool,
-    strict: bool,
-    force: bool,
+def view(
+    files: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Motion files; of two, the second is compared with the first."),
+    ] = None,
+    export: Annotated[
+        Path | None,
+        typer.Option("--export", help="Write the page to this file instead.", metavar="PAGE.html"),
+    ] = None,
+    lossless: Annotated[
+        bool, typer.Option("--lossless", help="Export exact values, not DiffMA.")
+    ] = False,
+    max_error: Annotated[
+        float,
+        typer.Option("--max-error", help="Of an exported value, in the file's units.", min=1e-12),
+    ] = 0.01,
+    asf: Asf = None,
+    port: Annotated[
+        int, typer.Option("--port", help="Port on 127.0.0.1; 0 takes a free one.", min=0, max=65535)
+    ] = 0,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
+    ] = True,
+    lenient: Lenient = False,
+    force: Force = False,
+    debug: Debug = False,
 ) -> None:
-    """Serve a page that plays the files, or write it."""
+    """Play motion files in the browser, one beside the other; or write a page that does."""
+    from mocapress.cli.report import message, say
+    from mocapress.cli.targets import known_endings, refuse_other_kinds
+    from mocapress.cli.warned import collecting, kept
+    from mocapress.errors import MocapressError
+    from mocapress.storage import check_targets, write_whole
+    from mocapress.viewer import embed, page
+
+    inputs = files or []
+    refuse_other_kinds(str(export) if export else None, (".html",), known_endings())
     stated = None if lossless or export is None else max_error
+    name = ""
     try:
-        with collecting():
-            clips = [
-                embed.file(path, asf_path=asf, max_error=stated, strict=strict) for path in inputs
-            ]
-        for warning in kept():
-            typer.echo(f"mocapress: warning: {warning}", err=True)
+        if export:
+            check_targets([export], force=force)
+        clips = []
+        for path in inputs:
+            name = str(path)
+            with collecting():
+                clips.append(embed.file(path, asf_path=asf, max_error=stated, strict=not lenient))
+            for warning in kept():
+                say(f"warning: {warning}")
         document = page.document(clips, " · ".join(path.name for path in inputs) or "mocapress")
         if export:
+            name = str(export)
             write_whole(export, document.encode(), force=force)
     except (MocapressError, OSError, MemoryError) as error:
-        typer.echo(f"mocapress: {_message(error)}", err=True)
+        if debug:
+            raise
+        say(message(error, name))
         raise typer.Exit(1) from error
     if export:
-        print(f"{export}: {export.stat().st_size} bytes, {_exactness(stated)}")
+        print(f"{export}: {len(document.encode())} bytes, {_exactness(stated)}")
     else:
         _serve(document, port, browser=browser)
 
 
 def _serve(document: str, port: int, *, browser: bool) -> None:
+    import webbrowser
+
+    from mocapress.cli.batch import usage
+    from mocapress.viewer import page
+    from mocapress.viewer.server import PageServer
+
     try:
         server = PageServer(document, page.policy(), port)
     except OSError as error:
@@ -64,9 +95,3 @@ def _serve(document: str, port: int, *, browser: bool) -> None:
 
 def _exactness(max_error: float | None) -> str:
     return "exact values" if max_error is None else f"no value off by more than {max_error:g}"
-
-
-def _message(error: Exception) -> str:
-    if isinstance(error, OSError):
-        return f"{error.filename}: {error.strerror}"
-    return "not enough memory" if isinstance(error, MemoryError) else str(error)

@@ -1,4 +1,4 @@
-"""Warnings of the library, each kept for the file in whose work it came up."""
+"""Collects the library's warnings, each for the file that caused it."""
 
 import threading
 import warnings

@@ -16,7 +16,7 @@ from mocapress.records import Writer
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """A run of frames, coded."""
+    """Consecutive frames, coded together."""
 
     first: int
     """Index of the first frame."""
@@ -28,7 +28,7 @@ class Chunk:
 
 @dataclass(frozen=True, slots=True)
 class Encoded:
-    """A clip, coded: what ``decode`` needs beside the columns and a model."""
+    """A coded clip: what ``decode`` needs besides the columns and a model."""
 
     header: bytes
     """The codec's own: whatever concerns all chunks."""
@@ -47,7 +47,7 @@ class Model:
 
     @property
     def digest(self) -> bytes:
-        """What files name the model by: SHA-256 of id and payload, their lengths before them."""
+        """The name that files use for the model: SHA-256 of id and payload with their lengths."""
         named = Writer()
         named.bytes(self.codec.encode())
         named.bytes(self.payload)
@@ -55,7 +55,7 @@ class Model:
 
 
 class Codec(ABC):
-    """A codec: a frozen dataclass whose fields are its parameters, with their usual values.
+    """A codec: a frozen dataclass whose fields are its parameters, with their defaults.
 
     ``encode`` and ``decode`` are pure functions of their arguments and the parameters: the same
     bytes on every run and every machine.
@@ -70,7 +70,7 @@ class Codec(ABC):
     def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:
         """Code a clip; ``(F, C)`` values, any float64 including NaN, infinities and -0.
 
-        A model that was learned from other columns than the clip's costs ratio, not correctness.
+        A model that was learned from other columns makes the result larger, never wrong.
 
         Raises
         ------
@@ -100,7 +100,7 @@ class Codec(ABC):
         """
 
     def largest_errors(self, columns: Sequence[Column]) -> list[float]:
-        """Give the error up to which each column may come back; infinite where none was asked."""
+        """Give the largest error allowed in each column; infinite where no bound was asked for."""
         return [0.0 if self.lossless else inf] * len(columns)
 
 
@@ -109,9 +109,9 @@ class Trainable(Protocol):
     """A codec that learns from other clips. Others ignore the models that they are given."""
 
     def train(self, clips: Iterable[Clip]) -> Model:
-        """Learn a model from clips, which are gone through once.
+        """Learn a model from clips, which are iterated over once.
 
-        The same model on every run and every machine.
+        Gives the same model on every run and every machine.
         """
         ...
 

@@ -1,4 +1,4 @@
-"""What is done when a codec fails: another way is tried, and the user is told."""
+"""What happens when a codec fails: mocapress tries another way and warns."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -21,13 +21,12 @@ T = TypeVar("T")
 
 @contextmanager
 def naming_faults(made: Codec) -> Iterator[None]:
-    """Turn an exception that only a fault of a codec can raise into one that says so.
+    """Turn an exception that only a defect of a codec can raise into one that says so.
 
     Raises
     ------
     VerificationError
-        In place of any exception but those that input, parameters, files or a lack of memory
-        cause.
+        Instead of any exception that is not due to input, parameters, files or lack of memory.
 
     """
     try:
@@ -42,12 +41,12 @@ def naming_faults(made: Codec) -> Iterator[None]:
 
 
 def first_that_works(made: Codec, work: Callable[[Codec], T]) -> tuple[T | None, str | None]:
-    """Do some work with a codec or, where the codec fails at it, with a plain lossless one.
+    """Do some work with a codec or, if the codec fails, with a plain lossless one.
 
     Returns
     -------
     tuple
-        What came of the work, None where both fail; and a warning, None where the first worked.
+        The result, None if both fail; and a warning, None if the first worked.
 
     """
     warning = None

@@ -1,4 +1,4 @@
-"""What a lossy codec lost, measured from what its decoder gives."""
+"""What a lossy codec lost, measured on its decoder's output."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -44,7 +44,7 @@ class Loss:
 
 
 def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss:
-    """Measure what a codec lost of a clip, and see that it kept the bounds that it has.
+    """Measure what a codec lost, and check that it kept its bounds.
 
     Raises
     ------

@@ -19,15 +19,13 @@ from mocapress.errors import (
     UnsupportedError,
     VerificationError,
 )
-from mocapress.formats import asf
-from mocapress.formats.files import columns_of, find_asf, sniff, split
+from mocapress.formats import columns_of
 from mocapress.formats.layout import Layout
-from mocapress.formats.problems import report
-from mocapress.motion import Clip, Column, Skeleton
+from mocapress.motion import Clip, Column
 from mocapress.motion.clip import decimal_seconds
 from mocapress.records import Reader, Writer
+from mocapress.source import JSON_SUFFIXES, Named, Source
 
-SUFFIXES = (".diffma.json", ".diffma.json.xz")
 _XZ = b"\xfd7zXZ\x00"
 _FOR_TEXT = [
     {
@@ -44,20 +42,14 @@ _MOST_TEXT = 1 << 28
 _MOST_MEMORY = 1 << 27
 
 
-def is_json(data: bytes | memoryview, name: str = "") -> bool:
-    """Tell DiffMA JSON, packed or not, from the contents or the name."""
-    head = bytes(data[:64])
-    return name.lower().endswith(SUFFIXES) or head[:6] == _XZ or head.lstrip()[:1] == b"{"
-
-
 def stem(name: str) -> str:
     """Give a file's name without the ending."""
-    ending = max((e for e in SUFFIXES if name.lower().endswith(e)), key=len, default="")
+    ending = max((e for e in JSON_SUFFIXES if name.lower().endswith(e)), key=len, default="")
     return name[: len(name) - len(ending)]
 
 
 def to_json(
-    source: str | Path | bytes | Clip,
+    source: Named | Clip,
     codec: str | DiffMA = "diffma",
     *,
     asf_path: str | Path | None = None,
@@ -67,7 +59,7 @@ def to_json(
     Parameters
     ----------
     source
-        A clip, a path, or the contents of an AMC or BVH.
+        A clip, or a motion file: a path, its contents, or a stream.
     codec
         ``diffma`` with parameters, ``"diffma:bound=4"``.
     asf_path
@@ -76,12 +68,12 @@ def to_json(
     Returns
     -------
     bytes
-        JSON text; ``decompress`` makes the AMC or BVH again, unless the source was a clip.
+        JSON text; ``decompress`` makes the motion file again, unless the source was a clip.
 
     Raises
     ------
     FormatError
-        When the source is no motion file, or a broken one.
+        When the source is not a motion file, or is broken.
     ParameterError
         When the codec is another, or has no such parameter.
 
@@ -89,13 +81,7 @@ def to_json(
     made = diffma_codec(codec) if isinstance(codec, str) else codec
     if isinstance(source, Clip):
         return clip_to_json(source, made)
-    data, name = (
-        (source, "") if isinstance(source, bytes) else (Path(source).read_bytes(), str(source))
-    )
-    if asf_path is None and name and sniff(data, name) == "amc":
-        asf_path = find_asf(Path(name))
-    skeleton = asf.parse_asf(Path(asf_path).read_bytes(), str(asf_path)) if asf_path else None
-    return file_to_json(data, made, name=name, skeleton=skeleton)
+    return file_to_json(Source(source), made, asf_path=asf_path)
 
 
 def diffma_codec(text: str) -> DiffMA:
@@ -106,24 +92,20 @@ def diffma_codec(text: str) -> DiffMA:
     return made
 
 
-def file_to_json(
-    data: bytes, codec: DiffMA, *, name: str = "", skeleton: Skeleton | None = None
-) -> bytes:
+def file_to_json(source: Source, codec: DiffMA, *, asf_path: str | Path | None = None) -> bytes:
     """Code a motion file; what comes back of it, by ``json_to_file``, has its layout.
 
     Raises
     ------
     FormatError
-        When it is no motion file, or a broken one.
+        When it is not a motion file, or is broken.
 
     """
-    kind = sniff(data, name)
-    if kind not in ("amc", "bvh"):
-        raise FormatError("not a motion file", file=name or None, expected="AMC or BVH")
-    clip, layout, problems = split(data, kind, skeleton=skeleton, file=name or None)
-    report(problems, name or None)
+    clip, layout, problems = source.split(asf_path)
+    source.accept(problems)
+    source.warn_of_guess()
     writer = Writer()
-    writer.integer(Kind[kind.upper()])
+    writer.integer(Kind[layout.format.upper()])
     writer.integer(clip.frames)
     return clip_to_json(clip, codec, layout=bytes(writer.data) + pack(layout.to_bytes()))
 
@@ -134,7 +116,7 @@ def clip_to_json(clip: Clip, codec: DiffMA, *, layout: bytes = b"") -> bytes:
     Raises
     ------
     UnsupportedError
-        When a value is no finite number, which JSON cannot hold.
+        When a value is not finite, which JSON cannot express.
     VerificationError
         When the codec fails, or what was decoded is not what was encoded.
 
@@ -209,10 +191,10 @@ def json_to_clip(data: bytes | memoryview, *, bound: float | None = None) -> Cli
     document = open_json(data)
     layout = _layout(document)
     if layout is not None:
-        clip = columns_of(layout, document.skeleton if layout.format == "amc" else None)
+        clip = columns_of(layout, document.skeleton)
         if clip.channels != len(document.names):
             raise _misfit("channels", len(document.names), clip.channels)
-        return clip.with_values(document.decode(bound))
+        return clip.with_frames(document.decode(bound), clip.frame_time)
     return Clip.of(
         document.decode(bound), _columns(document), document.frame_time, document.skeleton
     )
@@ -224,7 +206,7 @@ def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:
     Returns
     -------
     tuple
-        ``amc`` or ``bvh``, and the file's bytes.
+        The id of its format, and the file's bytes.
 
     Raises
     ------
@@ -245,13 +227,19 @@ def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:
     return layout.format, layout.join(values, (1 << 24) + 64 * (values.size + len(data)))
 
 
+def format_of(data: bytes | memoryview) -> str:
+    """Give the id of the format of the motion file that a document was made of, or ``json``."""
+    layout = _layout(open_json(data))
+    return layout.format if layout else "json"
+
+
 def _layout(document: Document) -> Layout | None:
     if not document.layout:
         return None
     reader = Reader(document.layout, "$.layout")
     kind, frames = Kind(reader.integer(max(Kind))), reader.integer()
     if kind is Kind.BYTES or frames != document.frames:
-        raise _misfit("frames of AMC or BVH", document.frames, frames)
+        raise _misfit("frames", document.frames, frames)
     most = (1 << 22) + 64 * len(document.layout)
     packed = document.layout[reader.position :]
     return Layout.from_bytes(unpack(packed, "$.layout", most), kind.name.lower(), frames)

@@ -12,7 +12,7 @@ _STORED, _LZMA, _DEFLATE = range(3)
 
 
 def pack(data: bytes) -> bytes:
-    """Pack bytes by the method that makes them smallest."""
+    """Compress bytes by whichever method makes them smallest."""
     # Literal context 4 and no position bits suit text, the default suits binary data.
     filters = [_lzma_filter(len(data), text=True), _lzma_filter(len(data), text=False)]
     candidates = [(_STORED, data)]

@@ -1,1 +1,143 @@
-"""Motion files: AMC with ASF, and BVH; read, written, and taken apart byte for byte."""
+"""Formats of motion files: one file each, found by being registered.
+
+Everything outside this folder knows formats only through this registry. Other packages add theirs
+by an entry point of the group ``mocapress.formats`` that names a ``Format``.
+"""
+
+import warnings
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import cache
+from importlib import import_module
+from importlib.metadata import entry_points
+
+from mocapress.errors import FormatError, UnsupportedError
+from mocapress.formats.contract import Format, Split
+from mocapress.formats.layout import Layout
+from mocapress.motion import Clip, Skeleton
+
+__all__ = [
+    "Format",
+    "Split",
+    "by_id",
+    "by_name",
+    "columns_of",
+    "formats",
+    "names",
+    "readable",
+    "recognise",
+    "suffixes",
+    "writable",
+]
+
+GROUP = "mocapress.formats"
+# Modules whose ``FORMAT`` is asked in this order; an ASF can look like an AMC, too.
+_OWN = ("bvh", "asf", "amc")
+_HEAD = 2**16
+
+
+@cache
+def _own() -> tuple[Format, ...]:
+    return tuple(import_module(f"mocapress.formats.{name}").FORMAT for name in _OWN)
+
+
+@cache
+def _others() -> tuple[Format, ...]:
+    """Load the formats of other packages: only when none of our own will do, for it takes time."""
+    found = []
+    for offer in entry_points(group=GROUP):
+        try:
+            made = offer.load()
+        except Exception as error:  # noqa: BLE001 - another package's fault must not stop ours
+            made = error
+        if isinstance(made, Format):
+            found.append(made)
+        else:
+            text = f"format {offer.name} ({offer.value}) is left out: {made!r}"
+            warnings.warn(text, stacklevel=2)
+    return tuple(found)
+
+
+def _all() -> Iterator[Format]:
+    yield from _own()
+    yield from _others()
+
+
+def formats() -> tuple[Format, ...]:
+    """Give all formats, our own first."""
+    return tuple(_all())
+
+
+def readable() -> tuple[Format, ...]:
+    """Give the formats of motion that can be read and compressed."""
+    return tuple(made for made in _all() if made.split)
+
+
+def writable() -> tuple[Format, ...]:
+    """Give the formats that clips can be written in."""
+    return tuple(made for made in _all() if made.write)
+
+
+def by_id(name: str) -> Format:
+    """Give the format of an id.
+
+    Raises
+    ------
+    UnsupportedError
+        When there is no such format.
+
+    """
+    found = next((made for made in _all() if made.id == name), None)
+    if found is None:
+        raise UnsupportedError(
+            "unknown format",
+            expected=", ".join(sorted(made.id for made in _all())),
+            found=repr(name),
+        )
+    return found
+
+
+def by_name(file: str) -> Format | None:
+    """Tell a format from a file's name."""
+    name = file.lower()
+    return next((made for made in _all() if name.endswith(made.suffixes)), None)
+
+
+def recognise(data: bytes, file: str = "") -> Format | None:
+    """Tell a format from a file's contents, then from its name; None for none."""
+    head = data[:_HEAD].lstrip(b"\xef\xbb\xbf \t\r\n")
+    found = next((made for made in _all() if made.recognises(head)), None)
+    return found or by_name(file)
+
+
+def suffixes(of: Iterable[Format]) -> tuple[str, ...]:
+    """Give the endings of formats' files, for finding them in folders."""
+    return tuple(sorted({suffix for made in of for suffix in made.suffixes}))
+
+
+def names(of: Iterable[Format], last: str = "or") -> str:
+    """List formats for people: ``AMC, ASF or BVH``."""
+    *some, final = sorted(made.name for made in of)
+    return f"{', '.join(some)} {last} {final}" if some else final
+
+
+def columns_of(layout: Layout, skeleton: Skeleton | None = None) -> Clip:
+    """Give the clip without frames that belongs to a layout: columns, frame time, skeleton.
+
+    Raises
+    ------
+    FormatError
+        When header and rows of the layout are not those of its format.
+
+    """
+    split = by_id(layout.format).split
+    if split is None:
+        raise UnsupportedError("a format that is only written", found=repr(layout.format))
+    empty = split(layout.first_row(), skeleton, None).clip
+    if empty.channels != len(layout.formats):
+        raise FormatError("columns", expected=str(len(layout.formats)), found=str(empty.channels))
+    columns = tuple(
+        replace(column, decimal=number_format)
+        for column, number_format in zip(empty.columns, layout.formats, strict=True)
+    )
+    return empty.with_columns(columns)[:0]

@@ -1,12 +1,17 @@
 """AMC: the motion of an Acclaim skeleton, one line per bone and frame."""
 
 import re
+from decimal import Decimal, InvalidOperation
+from fractions import Fraction
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.errors import FormatError
-from mocapress.formats.layout import Slot
+from mocapress.formats.asf import format_asf
+from mocapress.formats.contract import Format, Split, split_of
+from mocapress.formats.layout import Slot, build, print_clip
 from mocapress.formats.problems import Problem
 from mocapress.formats.rows import (
     Body,
@@ -18,11 +23,47 @@ from mocapress.formats.rows import (
     unreadable,
 )
 from mocapress.motion import Clip, Skeleton
+from mocapress.motion.clip import FrameTime, short_decimal
 from mocapress.motion.columns import bone_columns
+from mocapress.motion.convert import to_amc_clip
 
 # A line that holds a frame's number and nothing else.
 _COUNTER = re.compile(rb"^[ \t]*-?\d+[ \t]*\r?$", re.MULTILINE)
+_RATE = re.compile(rb"^[ \t]*:samples-per-second[ \t]+(\S+)", re.MULTILINE | re.IGNORECASE)
 _TOKEN = re.compile(rb"\S+")
+_KEYWORD = re.compile(rb"^\s*:(fully-specified|degrees|radians)\b", re.MULTILINE | re.IGNORECASE)
+
+
+def split(data: bytes, skeleton: Skeleton | None = None, file: str | None = None) -> Split:
+    """Take an AMC apart."""
+    body, shape, problems = read_body(data, file)
+    clip = clip_of(body.values, shape, data[: int(body.offsets[0])], skeleton)
+    layout = build("amc", data, body, partial(slots_of_row, shape=shape))
+    return split_of(clip, layout, problems, file)
+
+
+def fit(clip: Clip) -> Clip:
+    """Give the clip as an AMC has it; one without a skeleton is taken to be from an AMC."""
+    return to_amc_clip(clip) if clip.skeleton else clip
+
+
+def write(clip: Clip) -> dict[str, bytes]:
+    """Print a clip, and its skeleton as the ASF beside it."""
+    radians = any(column.unit == "rad" for column in clip.columns)
+    header = format_header(clip.frame_time, "rad" if radians else "deg") + b"\n"
+    literals = [b""]
+    for i, column in enumerate(clip.columns):
+        fresh = i == 0 or column.joint != clip.columns[i - 1].joint
+        literals.append(b"\n" + _bone(clip, i) + b" " if fresh else b" ")
+    literals.append(b"\n")
+    files = {".amc": print_clip(clip, header, literals, counter=True)}
+    return files | ({".asf": format_asf(clip.skeleton)} if clip.skeleton else {})
+
+
+def _bone(clip: Clip, column: int) -> bytes:
+    of = clip.columns[column]
+    name = clip.skeleton.joints[of.joint].name if clip.skeleton else of.name.rpartition(".")[0]
+    return name.encode("latin-1", "replace")
 
 
 def read_body(data: bytes, file: str | None = None) -> tuple[Body, RowShape, list[Problem]]:
@@ -80,7 +121,30 @@ def clip_of(
     radians = re.search(rb"^\s*:radians", header, re.MULTILINE | re.IGNORECASE)
     degrees = re.search(rb"^\s*:degrees", header, re.MULTILINE | re.IGNORECASE)
     angle_unit = "rad" if radians else "deg" if degrees else None
-    return Clip.of(body_values, bone_columns(skeleton, bones, angle_unit), None, skeleton, name)
+    columns = bone_columns(skeleton, bones, angle_unit)
+    return Clip.of(body_values, columns, frame_time_of(header), skeleton, name)
+
+
+def frame_time_of(header: bytes) -> Fraction | None:
+    """Give the seconds per frame that a header states, if it does and they are a time."""
+    stated = _RATE.search(header)
+    if stated is None:
+        return None
+    try:
+        rate = Decimal(stated[1].decode("latin-1"))
+    except InvalidOperation:
+        return None
+    return (
+        1 / Fraction(rate) if rate.is_finite() and abs(rate.adjusted()) < 18 and rate > 0 else None
+    )
+
+
+def format_header(frame_time: FrameTime, angle_unit: str) -> bytes:
+    """Print what stands before the frames."""
+    lines = [":FULLY-SPECIFIED", ":RADIANS" if angle_unit == "rad" else ":DEGREES"]
+    if frame_time:
+        lines.append(f":SAMPLES-PER-SECOND {short_decimal(1 / Fraction(frame_time)):f}")
+    return "\n".join(lines).encode()
 
 
 def slots_of_row(text: bytes, shape: RowShape) -> list[Slot]:
@@ -170,3 +234,16 @@ def _expected(body: Body, shape: RowShape) -> str:
         bone = shape.words[body.error_item].decode("latin-1")
         return f"{shape.counts[body.error_item]} numbers for bone {bone}"
     return f"bone {shape.words[body.error_item].decode('latin-1')}"
+
+
+FORMAT = Format(
+    id="amc",
+    name="AMC",
+    suffixes=(".amc",),
+    recognises=lambda head: bool(_KEYWORD.search(head)),
+    split=split,
+    fit=fit,
+    write=write,
+    timed=False,
+    companion="asf",
+)

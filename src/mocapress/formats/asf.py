@@ -9,9 +9,11 @@ from typing import NoReturn
 import numpy as np
 
 from mocapress.errors import FormatError
+from mocapress.formats.contract import Format
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 
 _CHANNELS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")
+_KEYWORD = re.compile(rb"^\s*:(bonedata|root|hierarchy|version)\b", re.MULTILINE | re.IGNORECASE)
 _LIMIT = re.compile(r"\(\s*([^\s()]+)[\s,]+([^\s()]+)\s*\)")
 
 
@@ -302,3 +304,12 @@ def bone_vectors(skeleton: Skeleton) -> list[Vec3]:
 
 def _text(vector: Vec3) -> str:
     return " ".join(repr(float(x)) for x in vector)
+
+
+FORMAT = Format(
+    id="asf",
+    name="ASF",
+    suffixes=(".asf",),
+    recognises=lambda head: bool(_KEYWORD.search(head)),
+    read_skeleton=parse_asf,
+)

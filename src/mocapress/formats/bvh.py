@@ -2,9 +2,10 @@
 
 import re
 
-from mocapress.errors import FormatError
-from mocapress.formats.bvh_hierarchy import Hierarchy, parse_hierarchy
-from mocapress.formats.layout import Slot
+from mocapress.errors import FormatError, UnsupportedError
+from mocapress.formats.bvh_hierarchy import Hierarchy, format_hierarchy, parse_hierarchy
+from mocapress.formats.contract import Format, Split, split_of
+from mocapress.formats.layout import Slot, build, print_clip
 from mocapress.formats.problems import EXTRA_ROWS, MISSING_ROWS, Problem
 from mocapress.formats.rows import (
     Body,
@@ -18,8 +19,31 @@ from mocapress.formats.rows import (
     read_rows,
     unreadable,
 )
+from mocapress.motion import Clip, Skeleton
+from mocapress.motion.clip import decimal_seconds
+from mocapress.motion.columns import skeleton_columns
+from mocapress.motion.convert import to_bvh_clip
 
 _TOKEN = re.compile(rb"\S+")
+
+
+def split(data: bytes, _skeleton: Skeleton | None = None, file: str | None = None) -> Split:
+    """Take a BVH apart; it has its skeleton in itself."""
+    body, hierarchy, problems = read_body(data, file)
+    columns = skeleton_columns(hierarchy.skeleton)
+    clip = Clip.of(body.values, columns, hierarchy.frame_time, hierarchy.skeleton)
+    return split_of(clip, build("bvh", data, body, slots_of_row), problems, file)
+
+
+def write(clip: Clip) -> dict[str, bytes]:
+    """Print a clip."""
+    if clip.skeleton is None:
+        raise UnsupportedError("a BVH file needs a skeleton")
+    if clip.frame_time is None:
+        raise UnsupportedError("a BVH file needs a frame time")
+    header = format_hierarchy(clip.skeleton, clip.frames, decimal_seconds(clip.frame_time))
+    literals = [b"", *[b" "] * (clip.channels - 1), b"\n"]
+    return {".bvh": print_clip(clip, header, literals, counter=False)}
 
 
 def read_body(data: bytes, file: str | None = None) -> tuple[Body, Hierarchy, list[Problem]]:
@@ -76,3 +100,14 @@ def slots_of_row(text: bytes) -> list[Slot]:
     """Find the numbers in a row's bytes."""
     line = text.split(b"\n", 1)[0] if text.lstrip()[:1] != b"#" else text
     return [(column, *token.span()) for column, token in enumerate(_TOKEN.finditer(line))]
+
+
+FORMAT = Format(
+    id="bvh",
+    name="BVH",
+    suffixes=(".bvh",),
+    recognises=lambda head: head[:9].upper() == b"HIERARCHY",
+    split=split,
+    fit=to_bvh_clip,
+    write=write,
+)

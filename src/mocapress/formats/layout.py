@@ -1,10 +1,10 @@
 """Everything of a motion file that is not a number, so that bytes come back as they were.
 
-``layout.split(...)`` is each format's own (``amc``, ``bvh``); here is what they share: templates of
-rows, the numbers that are not written as their column is, and the way back to bytes.
+Taking a file apart is each format's own; here is what they share: templates of rows, the numbers
+that are not written as their column is, and the way back to bytes.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -15,6 +15,7 @@ from mocapress import _core
 from mocapress.errors import CorruptError
 from mocapress.formats.number_formats import detect, packed
 from mocapress.formats.rows import Body
+from mocapress.motion.clip import Clip
 from mocapress.motion.number_format import NumberFormat, NumberKind
 from mocapress.records import Reader, Writer
 
@@ -48,7 +49,7 @@ class Layout:
     """A file without its numbers."""
 
     format: str
-    """``amc`` or ``bvh``."""
+    """Its id."""
     header: bytes
     """Up to the first row, verbatim."""
     tail: bytes
@@ -262,6 +263,39 @@ def build(
         tuple(cell[2] for cell in cells),
         tuple(row(index)[0] for index in np.flatnonzero(assigned < 0).tolist()),
     )
+
+
+def print_clip(clip: Clip, header: bytes, literals: Sequence[bytes], *, counter: bool) -> bytes:
+    """Print a clip with all rows alike; numbers in their columns' formats, else the fewest digits.
+
+    Parameters
+    ----------
+    clip
+        Its columns are those of the format, in the order of the rows.
+    header
+        What stands before the first row.
+    literals
+        The bytes before, between and behind a row's numbers.
+    counter
+        Whether each row begins with the frame's number, from 1.
+
+    """
+    shortest = NumberFormat(NumberKind.SHORTEST)
+    unpadded = (0,) * clip.channels
+    layout = Layout(
+        "",
+        header,
+        b"",
+        tuple(column.decimal or shortest for column in clip.columns),
+        (RowTemplate(counter, tuple(literals), tuple(range(clip.channels)), unpadded),),
+        np.zeros(clip.frames, np.int32),
+        np.arange(1, clip.frames + 1) if counter else np.empty(0, np.int64),
+        np.empty(0, np.uint64),
+        np.empty(0, np.uint32),
+        (),
+        (),
+    )
+    return layout.join(clip.values)
 
 
 def _template(text: bytes, slots: list[Slot]) -> RowTemplate:

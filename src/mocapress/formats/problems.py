@@ -1,10 +1,8 @@
 """What is not as it should be in a file that can be read nevertheless."""
 
-import warnings
-from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mocapress.errors import FormatError, MotionWarning
+from mocapress.errors import FormatError
 
 MISSING_ROWS = "missing-rows"
 """Fewer rows than declared."""
@@ -60,34 +58,3 @@ class Problem:
             expected=self.expected,
             found=self.found,
         )
-
-
-def report(
-    problems: Sequence[Problem], file: str | None = None, *, strict: bool = True, depth: int = 1
-) -> None:
-    """Raise the first problem that loses motion, where reading is strict; warn of the others.
-
-    Parameters
-    ----------
-    problems
-        As ``Split`` has them.
-    file
-        For the messages.
-    strict
-        Whether losing motion is an error; otherwise it is a warning, too.
-    depth
-        How many calls lie between this one and the one that a warning should point to.
-
-    Raises
-    ------
-    FormatError
-        With place, expected and found.
-
-    """
-    if strict:
-        for problem in problems:
-            if problem.loses_motion:
-                raise problem.error(file)
-    for problem in problems:
-        warning = MotionWarning(problem.name, problem.error(file))
-        warnings.warn(warning, stacklevel=depth + 2)

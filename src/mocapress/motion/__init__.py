@@ -1,4 +1,4 @@
-"""Motion as data: clips, skeletons, number formats and kinematics. Knows no file and no codec."""
+"""Motion as data: clips, skeletons, number formats and kinematics, without files and codecs."""
 
 from mocapress.motion.clip import Clip, Column, Stream
 from mocapress.motion.number_format import NumberFormat

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from decimal import Decimal
+from decimal import Decimal, localcontext
 from fractions import Fraction
 from types import MappingProxyType
 from typing import Self
@@ -18,10 +18,21 @@ FrameTime = Decimal | Fraction | None
 
 
 def decimal_seconds(frame_time: Decimal | Fraction) -> Decimal:
-    """Give a frame time as a decimal: exactly where it is one, else to 28 digits."""
-    if isinstance(frame_time, Decimal):
-        return frame_time
-    return Decimal(frame_time.numerator) / Decimal(frame_time.denominator)
+    """Give a frame time as a decimal: exactly where it is one, else the nearest short one."""
+    return frame_time if isinstance(frame_time, Decimal) else short_decimal(frame_time)
+
+
+def short_decimal(value: Fraction) -> Decimal:
+    """Give the decimal of fewest digits that differs by less than one part in 10**18.
+
+    So that a frame time of up to 17 digits comes back from the rate, and the rate from it.
+    """
+    with localcontext() as context:
+        for context.prec in range(1, 21):
+            short = Decimal(value.numerator) / Decimal(value.denominator)
+            if abs(Fraction(short) - value) * 10**18 < abs(value):
+                break
+    return short
 
 
 MOTION = "motion"
@@ -52,7 +63,7 @@ class Stream:
     """(F, C) float64, read-only, in the units of the columns, exactly as the source has them."""
     columns: tuple[Column, ...]
     frame_time: FrameTime = None
-    """Seconds per frame as the file states it; None where the format does not say (AMC)."""
+    """Seconds per frame as the file states it; None where it does not (most AMC)."""
 
     def __post_init__(self) -> None:
         if self.values.ndim != 2 or self.values.shape[1] != len(self.columns):
@@ -122,7 +133,7 @@ class Clip:
 
     @property
     def frame_time(self) -> FrameTime:
-        """Seconds per frame of the first stream; None where the source does not say (AMC)."""
+        """Seconds per frame of the first stream; None where the source does not say."""
         return self.main.frame_time
 
     @property
@@ -146,16 +157,68 @@ class Clip:
             return str(offer.load()(self)) if self.frames else None
         return None
 
+    def __getitem__(self, frames: slice) -> Self:
+        """Give some of the frames: ``clip[a:b:step]``, with Python's rules for slices.
+
+        The frame time follows the step: every second frame lasts twice as long. With a step below
+        zero the clip runs backwards. All streams have to share their frames.
+        """
+        step = abs(range(self.frames)[frames].step)
+        if any(
+            (stream.frames, stream.frame_time) != (self.frames, self.frame_time)
+            for stream in self.streams.values()
+        ):
+            msg = "the streams of this clip differ in their frames"
+            raise ValueError(msg)
+        frame_time = None if self.frame_time is None else self.frame_time * step
+        streams = {
+            name: replace(stream, values=stream.values[frames], frame_time=frame_time)
+            for name, stream in self.streams.items()
+        }
+        return replace(self, streams=streams)
+
     def with_values(self, values: NDArray[np.float64]) -> Self:
-        """Give the same clip with other values, (F', C), in the first stream."""
+        """Give the same clip with other values in the first stream.
+
+        Parameters
+        ----------
+        values
+            (F, C), of as many frames as before: what other frames would last is not known here.
+            ``clip[a:b:step]`` takes some of the frames, ``with_frames`` puts others in.
+
+        Raises
+        ------
+        ValueError
+            When there are more or fewer frames or channels.
+
+        """
+        if len(values) != self.frames:
+            msg = f"{len(values)} frames of values for a clip of {self.frames}; see with_frames"
+            raise ValueError(msg)
         return self._with_main(values=values)
+
+    def with_frames(self, values: NDArray[np.float64], frame_time: FrameTime) -> Self:
+        """Give the same clip with other frames in the first stream, and what each lasts.
+
+        Parameters
+        ----------
+        values
+            (F', C), of any number of frames.
+        frame_time
+            Seconds per frame; None where it is not known.
+
+        """
+        return self._with_main(values=values, frame_time=frame_time)
 
     def with_columns(self, columns: tuple[Column, ...]) -> Self:
         """Give the same clip with other columns in the first stream, as many as before."""
         return self._with_main(columns=columns)
 
     def with_frame_time(self, frame_time: FrameTime) -> Self:
-        """Give the same clip, played at another speed: its first stream has this frame time."""
+        """Give the same frames with another frame time in the first stream.
+
+        The clip then lasts longer or shorter, and plays slower or faster.
+        """
         return self._with_main(frame_time=frame_time)
 
     def _with_main(self, **changes: object) -> Self:

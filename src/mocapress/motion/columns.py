@@ -1,4 +1,4 @@
-"""From skeletons to columns."""
+"""Columns of a skeleton's channels."""
 
 from collections.abc import Sequence
 
@@ -23,13 +23,13 @@ def bone_columns(
     Parameters
     ----------
     skeleton
-        Where to look the bones up: by name, else by name without regard to case; the n-th bone of
-        a name is the n-th joint of that name. Without a skeleton, the kinds of columns are known
-        only of a first bone of six numbers, which is a root.
+        Where to look up the bones: by name, or else by name ignoring case. The n-th bone of a name
+        is the n-th joint of that name. Without a skeleton the kinds of columns are unknown, except
+        for a first bone with six numbers, which is a root.
     bones
         Name and number of values of each.
     angle_unit
-        ``deg`` or ``rad``; the skeleton's where not given.
+        ``deg`` or ``rad``; by default the skeleton's.
 
     Raises
     ------

@@ -1,19 +1,50 @@
 """From one format's skeleton and columns to another's; positions of joints stay."""
 
+import warnings
 from dataclasses import replace
-from decimal import Decimal
+from fractions import Fraction
 
 import numpy as np
 
-from mocapress.errors import UnsupportedError
+from mocapress.errors import MocapressError, MotionWarning, ParameterError, UnsupportedError
 from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton
 from mocapress.motion.columns import skeleton_columns
 from mocapress.motion.kinematics import Array, local_rotations, translations
 from mocapress.motion.number_format import NumberKind
 from mocapress.motion.skeleton import Vec3
 
-DEFAULT_FPS = 120.0
-"""Of an AMC, which does not say; that of the CMU database."""
+DEFAULT_FPS = 120
+"""What is assumed, with a warning, where nothing says it; the rate of the CMU database."""
+
+
+def with_rate(clip: Clip, fps: float | None = None, *, needed: bool = False) -> Clip:
+    """Give the clip at a rate.
+
+    Parameters
+    ----------
+    clip
+        Any clip.
+    fps
+        Frames per second, which replace those of the clip; None keeps the clip's own.
+    needed
+        Whether to assume 120 frames per second, with a ``MotionWarning`` named ``assumed-rate``,
+        where nobody says it.
+
+    Raises
+    ------
+    ParameterError
+        When ``fps`` is no number above 0.
+
+    """
+    if fps is not None:
+        if not 0 < fps < float("inf"):
+            raise ParameterError("fps", expected="a number above 0", found=str(fps))
+        return clip.with_frame_time(1 / Fraction(str(fps)))
+    if clip.frame_time or not needed:
+        return clip
+    what = f"the frame rate is not known; {DEFAULT_FPS} frames per second are assumed"
+    warnings.warn(MotionWarning("assumed-rate", MocapressError(what)), stacklevel=3)
+    return clip.with_frame_time(Fraction(1, DEFAULT_FPS))
 
 
 def to_bvh_clip(clip: Clip, fps: float | None = None) -> Clip:
@@ -28,18 +59,19 @@ def to_bvh_clip(clip: Clip, fps: float | None = None) -> Clip:
     clip
         With a skeleton. A clip that came from a BVH is given back as it is.
     fps
-        Frames per second where the clip has no frame time; 120 if not given.
+        Frames per second, instead of those of the clip. A clip that has none gets 120 where
+        nothing is given, with a ``MotionWarning``.
 
     Raises
     ------
+    ParameterError
+        When ``fps`` is no number above 0.
     UnsupportedError
         When the clip has no skeleton or its bones stretch.
 
     """
     skeleton = _skeleton(clip)
-    if clip.frame_time is None or fps is not None:
-        seconds = (1 / Decimal(str(fps or DEFAULT_FPS))).quantize(Decimal("1e-8"))
-        clip = clip.with_frame_time(seconds)
+    clip = with_rate(clip, fps, needed=True)
     if skeleton.rotation == "moving":
         return clip
     placed = translations(clip)

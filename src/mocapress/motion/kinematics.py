@@ -62,7 +62,7 @@ def rotations(clip: Clip) -> Array:
 
 
 def local_rotations(clip: Clip) -> Array:
-    """Give each joint's rotation against its parent: (F, J, 4) unit quaternions, scalar first."""
+    """Give rotations relative to the parents: (F, J, 4) unit quaternions, scalar first."""
     skeleton = _skeleton(clip)
     columns = _columns(clip)
     angle = np.pi / 180 if _angle_unit(clip) == "deg" else 1.0
@@ -77,7 +77,7 @@ def local_rotations(clip: Clip) -> Array:
 
 
 def translations(clip: Clip) -> Array:
-    """Give each joint's place in its parent's frame: (F, J, 3), offset and channels together."""
+    """Give positions relative to the parents: (F, J, 3), offset and channels together."""
     skeleton = _skeleton(clip)
     columns = _columns(clip)
     offsets = np.array([joint.offset for joint in skeleton.joints], dtype=np.float64)
@@ -109,7 +109,7 @@ def multiply(a: Array, b: Array) -> Array:
 
 
 def rotate(turn: Array, vector: Array) -> Array:
-    """Turn vectors, (..., 3), by unit quaternions, (..., 4)."""
+    """Rotate vectors, (..., 3), by unit quaternions, (..., 4)."""
     w, axis = turn[..., :1], turn[..., 1:]
     twice = 2 * np.cross(axis, vector)
     turned: Array = vector + w * twice + np.cross(axis, twice)
@@ -117,7 +117,7 @@ def rotate(turn: Array, vector: Array) -> Array:
 
 
 def euler(angles: Sequence[tuple[str, Array]]) -> Array:
-    """Multiply turns about x, y or z, (F,) radians each, from left to right: (F, 4)."""
+    """Multiply rotations about x, y or z, (F,) radians each, from left to right: (F, 4)."""
     turn: Array | None = None
     for axis, angle in angles:
         one = np.zeros((*np.shape(angle), 4))

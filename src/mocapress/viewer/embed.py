@@ -1,4 +1,4 @@
-"""Clips as the page carries them: as DiffMA JSON, or with their exact values."""
+"""Clips as the page holds them: as DiffMA JSON, or with their exact values."""
 
 import base64
 import json
@@ -14,6 +14,7 @@ from mocapress.codecs.diffma.skeleton_json import skeleton_keys
 from mocapress.container import diffma_json
 from mocapress.errors import MocapressError, UnsupportedError
 from mocapress.motion import Clip
+from mocapress.source import DIFFMA_JSON, MCZ, Source
 
 MAX_ERROR = 0.01
 """Of a value, in degrees or the file's unit of length: less than can be seen."""
@@ -26,12 +27,12 @@ def file(
     max_error: float | None = None,
     strict: bool = True,
 ) -> dict[str, Any]:
-    """Give what is in a motion file, of any kind that mocapress reads.
+    """Give the content of a motion file of any kind that mocapress reads.
 
     Parameters
     ----------
     path
-        AMC, BVH, ``.mcz`` or DiffMA JSON; the latter is embedded as it is.
+        A motion file, ``.mcz`` or DiffMA JSON; DiffMA JSON is embedded unchanged.
     asf_path
         The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
     max_error
@@ -42,16 +43,17 @@ def file(
     Raises
     ------
     MocapressError
-        When the file is broken, or no motion.
+        When the file is broken, or is not motion.
     OSError
         When it cannot be read.
 
     """
     try:
-        if diffma_json.is_json(b"", path.name):
-            return _document(path)
-        compressed = path.suffix.lower() == ".mcz"
-        clip = (api.load if compressed else api.read)(path, asf_path=asf_path, strict=strict)
+        source = Source(path)
+        if source.kind == DIFFMA_JSON:
+            return _document(source)
+        read = api.load if source.kind == MCZ else api.read
+        clip = read(path, asf_path=asf_path, strict=strict)
         if not clip.frames:
             raise UnsupportedError("no frames to be played")
         if max_error is None:
@@ -63,7 +65,7 @@ def file(
 
 
 def exact(clip: Clip, name: str = "") -> dict[str, Any]:
-    """Give a clip with its values as they are: float64, one channel after the other, in base64."""
+    """Give a clip with its exact values: float64, one channel after the other, in base64."""
     values = np.ascontiguousarray(clip.values.T, dtype="<f8").tobytes()
     content: dict[str, Any] = {
         "names": [column.name for column in clip.columns],
@@ -84,7 +86,7 @@ def approximate(clip: Clip, max_error: float, name: str = "") -> dict[str, Any]:
     Raises
     ------
     UnsupportedError
-        When a value is no finite number, which JSON cannot hold.
+        When a value is not finite, which JSON cannot express.
 
     """
     text = diffma_json.to_json(clip, DiffMA(max_error=max_error, per="channel"))
@@ -98,8 +100,8 @@ def _named(clip: Clip, name: str) -> dict[str, Any]:
     return made | {"angleUnit": unit} if unit in ("deg", "rad") else made
 
 
-def _document(path: Path) -> dict[str, Any]:
+def _document(source: Source) -> dict[str, Any]:
     """Give a DiffMA JSON without its layout, which only ``decompress`` needs."""
-    document = diffma_json.open_json(path.read_bytes())
+    document = diffma_json.open_json(source.data)
     text = replace(document, layout=b"").to_json()
-    return {"name": path.name, "diffma": json.loads(text)}
+    return {"name": Path(source.name).name, "diffma": json.loads(text)}

@@ -1,4 +1,4 @@
-"""A clip in a notebook: the page in a frame that carries all it needs."""
+"""A clip in a notebook: the page in a frame that needs nothing else."""
 
 import html
 
@@ -13,7 +13,7 @@ def frame(clip: Clip, *, max_error: float = embed.MAX_ERROR, height: int = 520) 
     Parameters
     ----------
     clip
-        Goes into the notebook's file as DiffMA JSON; exactly, where JSON cannot hold it.
+        Is stored in the notebook's file as DiffMA JSON, or exactly if JSON cannot express it.
     max_error
         Largest error of a value, in its unit.
     height

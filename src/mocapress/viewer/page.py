@@ -1,8 +1,8 @@
-"""The page as one document: markup, style, scripts and motion, with nothing to be fetched.
+"""The page as one document: markup, style, scripts and motion. It fetches nothing.
 
 The scripts are modules that import each other by relative paths. The document holds them packed,
-each after those that it imports; ``page/start.js`` gives every one of them a ``blob:`` URL. So they
-are the same files in a checkout, in its tests and in the document, without a bundler.
+each after those that it imports, and ``page/start.js`` gives each a ``blob:`` URL. So checkout,
+tests and document use the same files, without a bundler.
 """
 
 import base64
@@ -36,12 +36,12 @@ def document(clips: Sequence[dict[str, Any]], title: str = "mocapress") -> str:
     clips
         As ``embed`` makes them.
     title
-        Of the browser's window.
+        Title of the browser's window.
 
     Returns
     -------
     str
-        HTML; its policy (``policy``) allows no request to anywhere.
+        HTML. Its policy (``policy``) allows no requests at all.
 
     """
     # In a script element only "<" can end the text early or begin a comment.

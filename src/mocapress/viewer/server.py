@@ -1,4 +1,4 @@
-"""Serves one page to this machine's browser, and nothing else to nobody else."""
+"""Serve one page to the browser of this machine, and nothing else."""
 
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -15,7 +15,7 @@ class PageServer(ThreadingHTTPServer):
     Parameters
     ----------
     document
-        The page, HTML.
+        The page, as HTML.
     policy
         Its content security policy.
     port

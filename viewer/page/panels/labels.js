@@ -15,7 +15,7 @@ export function legend(lineup) {
     swatch.style.background = lineup.colours[i];
     const rate = Math.round(100 / take.frameTime) / 100;
     const facts = [`${take.frames.toLocaleString("en")} frames`, `${rate} fps`];
-    if (take.clip.frameTime === null) facts[1] += " taken";
+    if (take.clip.frameTime === null) facts[1] += " assumed";
     if (take.points)
       facts.push(`${take.jointNames.length} joints`, `up ${axisName(take.bearings.up)}`);
     if (take.clip.maxError) facts.push(`values ±${take.clip.maxError}`);

@@ -24,6 +24,7 @@ export function parseAmc(bytes, skeleton) {
   const { rows, notes } = readFrames(new Scanner(bytes, counter.index), bones);
   const header = text.slice(0, counter.index);
   const unit = /^\s*:(radians|degrees)/im.exec(header)?.[1].toLowerCase();
+  const rate = Number(/^[ \t]*:samples-per-second[ \t]+(\S+)/im.exec(header)?.[1]);
   const columns = skeleton ? columnsOf(skeleton, bones) : null;
   const made = columns && { ...skeleton, columns };
   return {
@@ -31,7 +32,7 @@ export function parseAmc(bytes, skeleton) {
     frames: rows.count,
     channels: rows.channels(),
     skeleton: made,
-    frameTime: null,
+    frameTime: rate > 0 && rate < Infinity ? 1 / rate : null,
     angleUnit: unit === "radians" ? "rad" : unit === "degrees" ? "deg" : undefined,
     notes: made ? notes : ["no skeleton: drop the .asf together with the .amc", ...notes],
   };

@@ -55,7 +55,7 @@ class App(Codec):
 
     @property
     def coding(self) -> Coding:
-        """What the compiled coder is told."""
+        """Settings of the compiled coder."""
         return Coding(ALPHA_TABLES[self.table], self.t, self.mantissa_limit, self.chunk)
 
     def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:  # noqa: ARG002

@@ -26,7 +26,7 @@ _LINES = {
 
 @dataclass(frozen=True, slots=True)
 class Coding:
-    """What the compiled coder is told.
+    """Settings of the compiled coder.
 
     A table of one alpha takes no indices: (1,) is the parallelogram predictor (Eq. 4), (0,) is
     prediction from the previous frame.

@@ -8,7 +8,6 @@ snapped to the column's decimal grid.
 
 from collections.abc import Sequence
 
-from mocapress.codecs.runs import read_runs, write_runs
 from mocapress.records import Reader, Writer
 
 PRECISIONS = 3
@@ -17,8 +16,8 @@ PRECISIONS = 3
 def pack_header(parents: Sequence[int], precisions: Sequence[int]) -> bytes:
     """Make the header of columns with these parents (-1 for none) and precisions."""
     writer = Writer()
-    write_runs(writer, [_distance(column, parent) for column, parent in enumerate(parents)])
-    write_runs(writer, precisions)
+    writer.runs([_distance(column, parent) for column, parent in enumerate(parents)])
+    writer.runs(precisions)
     return bytes(writer.data)
 
 
@@ -32,8 +31,8 @@ def unpack_header(header: bytes, columns: int) -> tuple[list[int], list[int]]:
 
     """
     reader = Reader(header, "APP header")
-    distances = read_runs(reader, columns, 2 * columns)
-    precisions = read_runs(reader, columns, PRECISIONS - 1)
+    distances = reader.runs(columns, 2 * columns).tolist()
+    precisions = reader.runs(columns, PRECISIONS - 1).tolist()
     reader.end()
     parents = [_parent(column, distance) for column, distance in enumerate(distances)]
     if any(not -1 <= parent < columns for parent in parents):

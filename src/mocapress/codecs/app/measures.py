@@ -1,4 +1,4 @@
-"""What the paper measures of the predictor: ideal alphas and the average prediction error."""
+"""Measures of the predictor from the paper: ideal alphas and the average prediction error."""
 
 from typing import Protocol
 
@@ -21,7 +21,7 @@ class Predictor(Protocol):
 
 
 def ideal_alphas(clip: Clip, t: int = 15) -> NDArray[np.float64]:
-    """Give the alpha of least squared error of every cluster and column (Eq. 9).
+    """Give the alpha with the least squared error for every cluster and column (Eq. 9).
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def ideal_alphas(clip: Clip, t: int = 15) -> NDArray[np.float64]:
 
     Returns
     -------
-    (ceil(F / t), C) float64. NaN for columns without a parent; 0 where the parent stands still.
+    (ceil(F / t), C) float64. NaN for columns without a parent; 0 where the parent does not move.
 
     """
     parents = parent_columns(clip)
@@ -46,8 +46,8 @@ def ideal_alphas(clip: Clip, t: int = 15) -> NDArray[np.float64]:
 def average_prediction_error(clip: Clip, codec: Predictor) -> float:
     """Give APE, the mean of ``|m - P|`` (Eq. 13), in the units of the columns.
 
-    Over all values that have a prediction: not over the first frame of a chunk. 0 where there are
-    none.
+    The mean is over all values that have a prediction, which excludes the first frame of a chunk;
+    0 if there are none.
     """
     coding = codec.coding
     values = np.ascontiguousarray(clip.values)

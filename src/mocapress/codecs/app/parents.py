@@ -4,11 +4,10 @@ from mocapress.motion import Clip
 
 
 def parent_columns(clip: Clip) -> list[int]:
-    """Give for each column the one whose step predicts its step, -1 for none.
+    """Give for each column the column whose step predicts its step, -1 for none.
 
-    That is the column of the same kind (``rx``, ``tz``, ...) of the nearest ancestor joint that
-    has one: the parent where it can, and else the joint through which the parent moves. Columns
-    of the root have none, nor has any without a skeleton.
+    It is the column of the same kind (``rx``, ``tz``, ...) of the nearest ancestor joint that has
+    one. Columns of the root have none; without a skeleton, no column has one.
     """
     joints = clip.skeleton.joints if clip.skeleton else ()
     place = {(column.joint, column.kind): index for index, column in enumerate(clip.columns)}

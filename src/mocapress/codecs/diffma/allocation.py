@@ -132,7 +132,7 @@ def _spend(
     budget: float,
     chosen: NDArray[np.intp],
 ) -> NDArray[np.intp]:
-    """Use what is left of the budget, each time where it saves most bits per error."""
+    """Spend the rest of the error budget, each time where it saves most bits per error."""
     columns = np.arange(rates.shape[1])
     chosen = chosen.copy()
     while True:

@@ -32,7 +32,7 @@ class DiffMA(Codec):
     lossless: ClassVar[bool] = False
 
     bits: int = 6
-    """n: 2^n steps are told apart."""
+    """n: a step is coded as one of 2^n sizes."""
     window: int = 64
     """w: over how many samples the mean is taken."""
     bound: float = 4.0

@@ -22,7 +22,7 @@ _WORTH_THREADS = 1 << 17
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What may differ from channel to channel."""
+    """Parameters that may differ from channel to channel."""
 
     bound: float
     """Beta: a step is at most this many times the mean of the last ones."""
@@ -34,7 +34,7 @@ class Plan:
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """A channel, coded."""
+    """A coded channel."""
 
     opcodes: bytes
     """ASCII, b of the paper."""
@@ -46,7 +46,7 @@ class Record:
 
 @dataclass(frozen=True, slots=True)
 class Coding:
-    """What all channels share: n, w and, for the encoder only, the rest."""
+    """Parameters that all channels share: n and w; the others are for the encoder only."""
 
     bits: int = 6
     window: int = 64
@@ -79,12 +79,12 @@ class Coding:
     def decode(
         self, records: Sequence[Record], plans: Sequence[Plan], frames: int
     ) -> NDArray[np.float64]:
-        """Decode records of so many frames by Algorithm 2: (C, F) float64.
+        """Decode records of ``frames`` frames by Algorithm 2: (C, F) float64.
 
         Raises
         ------
         ValueError
-            When a record's opcodes and table do not make so many frames.
+            When a record's opcodes and table do not make that many frames.
 
         """
         channels = np.empty((len(records), frames))

@@ -52,7 +52,7 @@ class Records(Struct):
 
 
 class Params(Struct, rename="camel", kw_only=True):
-    """What the codec was told; where bits is above 6, encoding is base85x2."""
+    """Parameters of the codec. Encoding is base85x2 if bits is above 6."""
 
     kind: Class = msgspec.field(name="class", default="DiffMA")
     bits: Annotated[float, Meta(ge=1, le=MOST_BITS, multiple_of=1, description="n")]

@@ -30,7 +30,7 @@ _FILTERS = [
 
 
 def pack_header(plans: Sequence[Plan]) -> bytes:
-    """Make the header: bound and order of all channels, equal neighbours together."""
+    """Make the header: bound and order of all channels, in runs of equal neighbours."""
     writer = Writer()
     for (bound, order), group in groupby((plan.bound, plan.order) for plan in plans):
         writer.data += struct.pack("<d", bound)
@@ -40,12 +40,12 @@ def pack_header(plans: Sequence[Plan]) -> bytes:
 
 
 def unpack_header(header: bytes, channels: int) -> list[Plan]:
-    """Read a header of so many channels.
+    """Read a header of ``channels`` channels.
 
     Raises
     ------
     CorruptError
-        When it is not one.
+        When it is malformed.
 
     """
     reader = Reader(header, "DiffMA header")
@@ -68,12 +68,12 @@ def pack_payload(records: Sequence[Record]) -> bytes:
 
 
 def unpack_payload(payload: bytes, channels: int, frames: int) -> list[Record]:
-    """Read the payload of so many channels and frames; what its opcodes ask for is not checked.
+    """Read the payload of this many channels and frames; its opcodes are not checked.
 
     Raises
     ------
     CorruptError
-        When it is not one.
+        When it is malformed.
 
     """
     most = _MOST_BYTES * channels * frames

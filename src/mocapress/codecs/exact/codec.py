@@ -10,17 +10,18 @@ from numpy.typing import NDArray
 from mocapress import _core
 from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
 from mocapress.codecs.exact.coupling_search import find_couplings
-from mocapress.codecs.exact.roles import Role, Roles, find_roles, read_roles, write_roles
+from mocapress.codecs.exact.header import pack_header, unpack_header
+from mocapress.codecs.exact.roles import Role, Roles, find_roles
 from mocapress.codecs.exact.skeletons import is_known
 from mocapress.codecs.exact.start import Learned, Start, model_of, start_of
 from mocapress.errors import CorruptError, ParameterError
 from mocapress.motion import Clip, Column
-from mocapress.records import Reader, Writer
 
 _MOST_FRAMES = 1 << 20
-_NO_MODEL, _MODEL = 0, 1
 _FAST_LEVELS = 2
 """Up to this level couplings are not looked for: core/exact_fast/codec.hpp has no use for them."""
+_TOGETHER = 1024
+"""Clips of more columns are coded in parts of so many, one behind the other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,13 +49,11 @@ class Exact(Codec):
         """
         start = Start()
         for clip in clips:
-            values = np.ascontiguousarray(clip.values, dtype=np.float64)
             if clip.frames == 0:
                 continue
-            roles = _roles(values, clip.columns, self.level)
-            coded = roles.coded
-            _, learned = _encode(values, roles, coded, self.level, start, learn=True)
-            start.take(coded, learned)
+            coder = _Coder(_roles(clip.values, clip.columns, self.level), self.level, start)
+            _, learned = coder.encode(clip.values, learn=True)
+            start.take(coder.columns, learned)
         return model_of(self.id, start)
 
     def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:
@@ -66,22 +65,15 @@ class Exact(Codec):
             When the model's payload is not one that ``train`` makes.
 
         """
-        values = np.ascontiguousarray(clip.values, dtype=np.float64)
         if clip.frames == 0:
             return Encoded(b"", ())
-        start = start_of(model)
-        roles = _roles(values, clip.columns, self.level)
-        writer = Writer()
-        writer.integer(_MODEL if model else _NO_MODEL)
-        write_roles(writer, roles)
-        constants = roles.of(Role.CONSTANT)
-        writer.bytes(_encode(values[:1], roles, constants, self.level, Start())[0])
+        roles = _roles(clip.values, clip.columns, self.level)
+        coder = _Coder(roles, self.level, start_of(model))
         chunks = []
         for first in range(0, clip.frames, self.chunk):
-            rows = values[first : first + self.chunk]
-            payload, _ = _encode(rows, roles, roles.coded, self.level, start)
-            chunks.append(Chunk(first, len(rows), payload))
-        return Encoded(bytes(writer.data), tuple(chunks))
+            rows = clip.values[first : first + self.chunk]
+            chunks.append(Chunk(first, len(rows), coder.encode(rows)[0]))
+        return Encoded(pack_header(roles, has_model=model is not None), tuple(chunks))
 
     def decode(
         self,
@@ -90,8 +82,11 @@ class Exact(Codec):
         columns: Sequence[Column],
         *,
         model: Model | None = None,
+        stop: int | None = None,
     ) -> NDArray[np.float64]:
         """Decode any chunks, one after the other: (sum of their frames, C) float64.
+
+        Of ``stop`` frames the rest of the last chunk that they need is not decoded.
 
         Raises
         ------
@@ -101,27 +96,20 @@ class Exact(Codec):
         """
         if not chunks:
             return np.empty((0, len(columns)))
-        reader = Reader(header, "exact header")
-        if reader.integer(_MODEL) == _MODEL and model is None:
-            raise reader.fail("the clip was coded with a model")
-        start = start_of(model)
-        roles = read_roles(reader, len(columns))
-        constants = roles.of(Role.CONSTANT)
-        first_row = _decode(
-            reader.bytes(), 1, roles, constants, self.level, Start(), reader.section
-        )
-        reader.end()
+        roles, has_model = unpack_header(header, len(columns))
+        if has_model and model is None:
+            raise CorruptError("exact header: the clip was coded with a model")
+        coder = _Coder(roles, self.level, start_of(model))
         for chunk in chunks:
-            self._check_size(chunk, len(roles.coded))
-        values = np.empty((sum(chunk.frames for chunk in chunks), len(columns)))
-        values[:, constants] = first_row
+            self._check_size(chunk, len(coder.columns))
+        frames = sum(chunk.frames for chunk in chunks)
+        values = np.empty((frames if stop is None else min(stop, frames), len(columns)))
+        values[:, roles.of(Role.CONSTANT)] = roles.constants
         row = 0
         for chunk in chunks:
-            where = f"exact chunk from frame {chunk.first}"
-            rows = _decode(
-                chunk.payload, chunk.frames, roles, roles.coded, self.level, start, where
-            )
-            values[row : row + chunk.frames, roles.coded] = rows
+            rows = values[row : row + chunk.frames]
+            if len(rows):
+                rows[:, coder.columns] = coder.decode(chunk, len(rows))
             row += chunk.frames
         copies = roles.of(Role.COPY)
         values[:, copies] = values[:, [roles.originals[column] for column in copies]]
@@ -150,37 +138,34 @@ def _roles(values: NDArray[np.float64], columns: Sequence[Column], level: int) -
     )
 
 
-def _encode(
-    values: NDArray[np.float64],
-    roles: Roles,
-    columns: Sequence[int],
-    level: int,
-    start: Start,
-    *,
-    learn: bool = False,
-) -> tuple[bytes, Learned]:
-    if not columns:
-        return b"", ([], [])
-    couplings = roles.coupled() if columns == roles.coded else []
-    rows = np.ascontiguousarray(values[:, columns])
-    return _core.exact_encode(rows, roles.plan(columns), couplings, level, start.of(columns), learn)
+class _Coder:
+    """The compiled coder, told how a clip is coded."""
 
+    def __init__(self, roles: Roles, level: int, start: Start) -> None:
+        self.columns = roles.coded
+        """The columns that it codes, in its order."""
+        self._level = level
+        self._plan = roles.plan(self.columns)
+        self._couplings = roles.coupled(self.columns)
+        self._start = start.of(self.columns)
 
-def _decode(
-    payload: bytes,
-    frames: int,
-    roles: Roles,
-    columns: Sequence[int],
-    level: int,
-    start: Start,
-    where: str,
-) -> NDArray[np.float64]:
-    rows = np.empty((frames, len(columns)))
-    if not columns and not payload:
-        return rows
-    couplings = roles.coupled() if columns == roles.coded else []
-    try:
-        _core.exact_decode(payload, rows, roles.plan(columns), couplings, level, start.of(columns))
-    except ValueError as error:
-        raise CorruptError(f"{where}: {error}") from error
-    return rows
+    def encode(self, rows: NDArray[np.float64], *, learn: bool = False) -> tuple[bytes, Learned]:
+        """Code rows of all columns of the clip, (F, C)."""
+        if not self.columns:
+            return b"", ([], [])
+        own = np.ascontiguousarray(rows[:, self.columns])
+        return _core.exact_encode(own, self._plan, self._couplings, self._level, self._start, learn)
+
+    def decode(self, chunk: Chunk, frames: int) -> NDArray[np.float64]:
+        """Decode the first frames of a chunk: its own columns, (frames, n)."""
+        if not self.columns and not chunk.payload:
+            return np.empty((frames, 0))
+        whole = frames == chunk.frames or len(self.columns) > _TOGETHER
+        rows = np.empty((chunk.frames if whole else frames, len(self.columns)))
+        try:
+            _core.exact_decode(
+                chunk.payload, rows, self._plan, self._couplings, self._level, self._start, whole
+            )
+        except ValueError as error:
+            raise CorruptError(f"exact chunk from frame {chunk.first}: {error}") from error
+        return rows[:frames]

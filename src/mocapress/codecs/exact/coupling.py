@@ -7,15 +7,18 @@ from enum import IntEnum
 
 from mocapress.records import Reader, Writer
 
-_JOINT_PARAMETERS = 7
-_JOINT_SHAPES = 243
-_MOST_BITS = 40
+_JOINT_AXES, _JOINT_TURNS, _JOINT_ONES = 27, 9, 9
+_JOINT_SHAPES = _JOINT_AXES * _JOINT_TURNS
+_JOINT_BITS = range(0, 41, 4)
+_JOINT_NUMBERS = 5
 _TOGETHER = 1024
 """The compiled coder codes so many columns on their own."""
 _MOST_PLACES = 1 << 16
 """It has couplings of so many columns."""
 _MOST_TOUCHING = 12
 """Couplings that one column may be in; bounds the work that a forged header asks for."""
+_MOST_SOURCES, _MOST_TARGETS = 6, 3
+"""Of a polynomial."""
 
 
 class CouplingKind(IntEnum):
@@ -31,16 +34,18 @@ class CouplingKind(IntEnum):
     NECK_MIDDLE = 7
 
 
-_MOST_SOURCES, _MOST_TARGETS = 6, 3
-_SHAPES = {
-    CouplingKind.SPINE: (6, 3),
-    CouplingKind.NECK: (6, 3),
-    CouplingKind.THUMB: (2, 2),
-    CouplingKind.OTHER_THUMB: (2, 2),
-    CouplingKind.SPINE_MIDDLE: (5, 1),
-    CouplingKind.NECK_MIDDLE: (5, 1),
+_CHAIN = ((0, 1, 2, 3, 4, 5), (7, 6, 8))
+_MIDDLE = ((0, 1, 2, 3, 5), (4,))
+_THUMB = ((0, 1), (2, 3))
+_LAWS = {
+    CouplingKind.SPINE: _CHAIN,
+    CouplingKind.NECK: _CHAIN,
+    CouplingKind.THUMB: _THUMB,
+    CouplingKind.OTHER_THUMB: _THUMB,
+    CouplingKind.SPINE_MIDDLE: _MIDDLE,
+    CouplingKind.NECK_MIDDLE: _MIDDLE,
 }
-"""Sources and targets of the laws."""
+"""Sources and targets of the laws where all joints stand one behind the other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,12 +60,17 @@ class Coupling:
     """Of a joint: shape, bits, and u, v, c as multiples of 2^-bits, a one left out of u and v."""
 
     @property
+    def columns(self) -> tuple[int, ...]:
+        """Sources and targets."""
+        return (*self.sources, *self.targets)
+
+    @property
     def ordered(self) -> tuple[int, ...]:
         """The columns that are coded in this order, at the places that they have together."""
         if self.kind is CouplingKind.POLYNOMIAL:
             return ()
         if self.kind is CouplingKind.JOINT:
-            return (*self.sources, *self.targets)
+            return self.columns
         if self.kind in (CouplingKind.SPINE_MIDDLE, CouplingKind.NECK_MIDDLE):
             return (*self.sources[3:], *self.targets)
         return self.targets
@@ -93,12 +103,11 @@ def arrange(
     kept: list[Coupling] = []
     for coupling in couplings:
         targets = {(coupling.kind is CouplingKind.POLYNOMIAL, c) for c in coupling.targets}
-        involved = (*coupling.sources, *coupling.targets)
         if (
             targets & taken
-            or any(len(touching[column]) == _MOST_TOUCHING for column in involved)
-            or len({places[column] // _TOGETHER for column in involved}) > 1
-            or max(places[column] for column in involved) >= _MOST_PLACES
+            or any(len(touching[column]) == _MOST_TOUCHING for column in coupling.columns)
+            or len({places[column] // _TOGETHER for column in coupling.columns}) > 1
+            or max(places[column] for column in coupling.columns) >= _MOST_PLACES
         ):
             continue
         moved = coupling.ordered
@@ -109,7 +118,7 @@ def arrange(
         ):
             kept.append(coupling)
             taken |= targets
-            for column in involved:
+            for column in coupling.columns:
                 touching[column].append(coupling)
         else:
             places.update(before)
@@ -123,45 +132,82 @@ def _stands(coupling: Coupling, places: dict[int, int]) -> bool:
     return ordered == sorted(ordered) and max(sources) < min(targets)
 
 
-def write_coupling(writer: Writer, coupling: Coupling) -> None:
-    """Append a coupling to a codec header."""
-    writer.integer(coupling.kind)
-    for side in (coupling.sources, coupling.targets):
-        writer.integer(len(side))
-        for column in side:
+def write_couplings(writer: Writer, couplings: Sequence[Coupling]) -> None:
+    """Append couplings to a codec header."""
+    writer.integer(len(couplings))
+    for coupling in couplings:
+        offsets = _offsets(coupling)
+        first = coupling.sources[0] - offsets[0]
+        adjacent = coupling.columns == tuple(first + offset for offset in offsets)
+        writer.integer(2 * coupling.kind + (not adjacent))
+        if coupling.kind is CouplingKind.POLYNOMIAL:
+            writer.integer(len(coupling.sources))
+            writer.integer(len(coupling.targets))
+        elif coupling.kind is CouplingKind.JOINT:
+            _write_joint(writer, coupling)
+        for column in (first,) if adjacent else coupling.columns:
             writer.integer(column)
-    for parameter in coupling.parameters:
-        writer.signed(parameter)
 
 
-def read_coupling(reader: Reader, columns: int) -> Coupling:
-    """Take a coupling of a clip of so many columns.
+def read_couplings(reader: Reader) -> list[Coupling]:
+    """Take couplings; whether there are such columns is not checked.
 
     Raises
     ------
     CorruptError
-        When there is no such coupling.
+        When there are no such couplings.
 
     """
-    kind = CouplingKind(reader.integer(max(CouplingKind)))
-    sources, targets = (
-        tuple(reader.integer(columns - 1) for _ in range(reader.count())) for _ in range(2)
-    )
-    if len({*sources, *targets}) < len(sources) + len(targets) or not _has_shape(
-        kind, len(sources), len(targets)
-    ):
-        raise reader.fail("a coupling of impossible shape")
-    parameters: tuple[int, ...] = ()
-    if kind is CouplingKind.JOINT:
-        parameters = tuple(reader.signed() for _ in range(_JOINT_PARAMETERS))
-        if not (0 <= parameters[0] < 9 * _JOINT_SHAPES and 0 <= parameters[1] <= _MOST_BITS):
-            raise reader.fail("a joint of impossible shape")
-    return Coupling(kind, sources, targets, parameters)
+    couplings = []
+    for _ in range(reader.count(2)):
+        code = reader.integer(2 * len(CouplingKind) - 1)
+        kind = CouplingKind(code // 2)
+        parameters: tuple[int, ...] = ()
+        if kind is CouplingKind.POLYNOMIAL:
+            sources, targets = reader.integer(_MOST_SOURCES), reader.integer(_MOST_TARGETS)
+        elif kind is CouplingKind.JOINT:
+            sources, targets, parameters = _read_joint(reader)
+        else:
+            sources, targets = (len(side) for side in _LAWS[kind])
+        columns = tuple(range(sources + targets))
+        made = Coupling(kind, columns[:sources], columns[sources:], parameters)
+        offsets = _offsets(made)
+        if code % 2:
+            columns = tuple(reader.integer() for _ in columns)
+        else:
+            first = reader.integer()
+            columns = tuple(first + offset for offset in offsets)
+        if not sources or not targets or len({*columns}) < len(columns):
+            raise reader.fail("a coupling of impossible shape")
+        couplings.append(Coupling(kind, columns[:sources], columns[sources:], parameters))
+    return couplings
 
 
-def _has_shape(kind: CouplingKind, sources: int, targets: int) -> bool:
-    if kind is CouplingKind.POLYNOMIAL:
-        return 1 <= sources <= _MOST_SOURCES and 1 <= targets <= _MOST_TARGETS
-    if kind is CouplingKind.JOINT:
-        return 1 <= sources <= 2 and targets == 1
-    return (sources, targets) == _SHAPES[kind]
+def _offsets(coupling: Coupling) -> tuple[int, ...]:
+    """Give the columns of a coupling of this shape whose joints stand one behind the other."""
+    if coupling.kind is CouplingKind.POLYNOMIAL:
+        return tuple(range(len(coupling.columns)))
+    if coupling.kind is CouplingKind.JOINT:
+        source, target = divmod(coupling.parameters[0] // _JOINT_AXES % _JOINT_TURNS, 3)
+        return (*(source, 3 - source - target)[: len(coupling.sources)], target)
+    sources, targets = _LAWS[coupling.kind]
+    return sources + targets
+
+
+def _write_joint(writer: Writer, coupling: Coupling) -> None:
+    shape, bits, *multiples = coupling.parameters
+    given = sum((multiple != 0) << i for i, multiple in enumerate(multiples))
+    told = (2 * shape + len(coupling.sources) - 1) * len(_JOINT_BITS) + _JOINT_BITS.index(bits)
+    writer.integer(told * 2**_JOINT_NUMBERS + given)
+    for multiple in filter(None, multiples):
+        writer.signed(multiple)
+
+
+def _read_joint(reader: Reader) -> tuple[int, int, tuple[int, ...]]:
+    """Take what is special of a joint: the numbers of sources and targets, and the parameters."""
+    most = 2 * _JOINT_ONES * _JOINT_SHAPES * len(_JOINT_BITS) * 2**_JOINT_NUMBERS - 1
+    told, given = divmod(reader.integer(most), 2**_JOINT_NUMBERS)
+    told, bits = divmod(told, len(_JOINT_BITS))
+    shape, sources = divmod(told, 2)
+    multiples = (reader.signed() if given >> i & 1 else 0 for i in range(_JOINT_NUMBERS))
+    return sources + 1, 1, (shape, _JOINT_BITS[bits], *multiples)

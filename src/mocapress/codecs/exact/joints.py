@@ -1,4 +1,4 @@
-"""Which joints have fewer than three degrees of freedom, though their columns are three angles.
+"""Finds joints with fewer than three degrees of freedom, although they have three angles.
 
 A knee that turned about one axis in the file from which a clip was converted still does, in other
 angles; a wrist that had two axes keeps them. In both cases some direction v of the bone and some
@@ -58,7 +58,7 @@ class _Motion:
 
 @dataclass(frozen=True, slots=True)
 class _Limit:
-    """u' R v = c, by which a target of a joint's three angles follows from one or two sources."""
+    """u' R v = c, by which one of a joint's angles follows from one or both of the others."""
 
     u: Floats
     v: Floats
@@ -91,7 +91,7 @@ def find_joints(
 
 
 def _is_limited(motion: _Motion) -> bool:
-    """Tell quickly of most joints that turn freely that they have no limit."""
+    """Rule out quickly most joints that turn freely."""
     vectors = motion.rotation.reshape(-1, 9)
     least = np.linalg.eigvalsh(vectors.T @ vectors)[0] / len(vectors)
     return bool(least <= max(_NEAR, _NEAR_STEPS * motion.steps.max()) ** 2)
@@ -233,7 +233,7 @@ def _limit(
     sources: tuple[int, ...] = (),
     c: float = 0,
 ) -> _Limit:
-    """Give a limit and what it tells of the target."""
+    """Give a limit and what it predicts for the target."""
     sources = sources or tuple(i for i in range(3) if i != target)
     moved = motion.rotation @ v
     off = moved @ u - c
@@ -247,7 +247,7 @@ def _limit(
 
 
 def _coupling(motion: _Motion, limit: _Limit) -> Coupling:
-    """Give a limit with u, v, c as whole multiples of a power of two, as few as will do."""
+    """Give a limit with u, v, c as multiples of a power of two, with the fewest bits that do."""
     largest = [int(np.abs(vector).argmax()) for vector in (limit.u, limit.v)]
     u, v = limit.u / limit.u[largest[0]], limit.v / limit.v[largest[1]]
     c = limit.c / (limit.u[largest[0]] * limit.v[largest[1]])

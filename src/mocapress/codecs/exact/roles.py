@@ -1,4 +1,4 @@
-"""What each column is to the codec, found once per clip, and the header that says so."""
+"""What each column is to the codec, found once per clip."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -8,22 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
-from mocapress.codecs.exact.coupling import (
-    Coupling,
-    arrange,
-    read_coupling,
-    write_coupling,
-)
-from mocapress.codecs.exact.skeletons import PLACES
-from mocapress.codecs.runs import read_runs, write_runs
-from mocapress.records import Reader, Writer
+from mocapress.codecs.exact.coupling import Coupling, arrange
 
 _NOISE = 1e-10
 _USUAL_MOVE = -3
-_EXPONENT_STEP = 8
+EXPONENT_STEP = 8
 _MOVES = 300
-_MOST_EXPONENT = 1000
-_LINE_DIGITS = 32
+MOST_EXPONENT = 1000
 _HALF_TURN = 180
 _JUMP = 300
 
@@ -33,7 +24,7 @@ class Role(IntEnum):
 
     PREDICTED = 0
     CONSTANT = 1
-    """The first row's bits in every row; they stand in the header."""
+    """The same bits in every row; they stand in the header."""
     COPY = 2
     """The bits of an earlier column."""
     NOISE = 3
@@ -56,6 +47,8 @@ class Roles:
     couplings: tuple[Coupling, ...]
     places: bool
     """Whether the columns are the channels of the skeleton that the compiled coder knows."""
+    constants: tuple[float, ...]
+    """Values of the constant columns."""
 
     def of(self, *roles: Role) -> list[int]:
         """Give the columns of some roles, role by role."""
@@ -67,9 +60,11 @@ class Roles:
         predicted, _ = arrange(self.of(Role.PREDICTED), self.couplings)
         return predicted + self.of(Role.NOISE)
 
-    def coupled(self) -> list[tuple[int, list[int], list[int], list[float]]]:
-        """Give the couplings as the compiled coder has them, in places among ``coded``."""
-        place = {column: i for i, column in enumerate(self.coded)}
+    def coupled(
+        self, columns: Sequence[int]
+    ) -> list[tuple[int, list[int], list[int], list[float]]]:
+        """Give the couplings as the compiled coder has them, in places among its columns."""
+        place = {column: i for i, column in enumerate(columns)}
         return [
             (
                 coupling.kind,
@@ -125,6 +120,7 @@ def find_roles(
         tuple(_turns(values, roles)),
         tuple(arrange(predicted, couple(predicted, lines))[1]),
         places,
+        tuple(values[0, constant].tolist()),
     )
 
 
@@ -153,63 +149,5 @@ def _exponents(values: NDArray[np.float64], roles: Sequence[Role]) -> Iterator[i
             yield 0
             continue
         usual = np.frexp(np.median(found))[1]
-        exponent = _EXPONENT_STEP * round((_USUAL_MOVE - int(usual)) / _EXPONENT_STEP)
-        yield max(-_MOST_EXPONENT, min(_MOST_EXPONENT, exponent))
-
-
-def write_roles(writer: Writer, roles: Roles) -> None:
-    """Append the roles to a codec header."""
-    told = zip(roles.roles, roles.turns, strict=True)
-    write_runs(writer, [role + len(Role) * turns for role, turns in told])
-    write_runs(writer, [line * _LINE_DIGITS + digits for line, digits in roles.lines])
-    write_runs(writer, [2 * e if e >= 0 else -2 * e - 1 for e in roles.exponents])
-    for column in roles.of(Role.COPY):
-        writer.integer(column - roles.originals[column] - 1)
-    writer.integer(len(roles.couplings))
-    for coupling in roles.couplings:
-        write_coupling(writer, coupling)
-    writer.integer(roles.places)
-
-
-def read_roles(reader: Reader, columns: int) -> Roles:
-    """Take the roles of as many columns.
-
-    Raises
-    ------
-    CorruptError
-        When they are not such as ``write_roles`` writes.
-
-    """
-    told = [divmod(code, len(Role)) for code in read_runs(reader, columns, 3 * len(Role) - 1)]
-    roles = tuple(Role(role) for _, role in told)
-    lines = [
-        divmod(line, _LINE_DIGITS) for line in read_runs(reader, columns, 7 * _LINE_DIGITS - 1)
-    ]
-    exponents = [
-        code // 2 if code % 2 == 0 else -(code + 1) // 2
-        for code in read_runs(reader, columns, 2 * _MOST_EXPONENT)
-    ]
-    originals = list(range(columns))
-    for column, role in enumerate(roles):
-        if role is Role.COPY:
-            originals[column] = column - 1 - reader.integer(2**20)
-            if originals[column] < 0 or roles[originals[column]] is Role.COPY:
-                raise reader.fail("a column copies one that is not there")
-    couplings = [read_coupling(reader, columns) for _ in range(reader.count(5))]
-    if any(roles[c] is not Role.PREDICTED for own in couplings for c in own.sources + own.targets):
-        raise reader.fail("a coupling of columns that are not predicted")
-    predicted = [column for column, role in enumerate(roles) if role is Role.PREDICTED]
-    if arrange(predicted, couplings)[1] != couplings:
-        raise reader.fail("couplings that cannot stand together")
-    places = reader.integer(1) == 1
-    if places and columns != PLACES:
-        raise reader.fail("the channels of a skeleton that has others")
-    return Roles(
-        roles,
-        tuple(originals),
-        tuple(lines),
-        tuple(exponents),
-        tuple(turns for turns, _ in told),
-        tuple(couplings),
-        places,
-    )
+        exponent = EXPONENT_STEP * round((_USUAL_MOVE - int(usual)) / EXPONENT_STEP)
+        yield max(-MOST_EXPONENT, min(MOST_EXPONENT, exponent))

@@ -7,6 +7,7 @@ core/exact/kinematics_tables.hpp has the skeleton, that of the CMU motion captur
 from collections.abc import Sequence
 from itertools import groupby
 
+from mocapress.codecs.exact.coupling import Coupling, CouplingKind
 from mocapress.motion import Column
 
 _ARM = ("ry rz", "rx ry rz", "rx", "ry", "rx rz", "rx", "rx rz")
@@ -15,6 +16,16 @@ _JOINTS = ("tx ty tz rx ry rz", *("rx ry rz",) * 6, *_ARM, *_ARM, *_LEG, *_LEG)
 
 PLACES = sum(len(joint.split()) for joint in _JOINTS)
 """Number of the skeleton's channels."""
+
+OWN_COUPLINGS = (
+    Coupling(CouplingKind.SPINE, (6, 7, 8, 9, 10, 11), (13, 12, 14)),
+    Coupling(CouplingKind.SPINE_MIDDLE, (6, 7, 8, 9, 11), (10,)),
+    Coupling(CouplingKind.NECK, (15, 16, 17, 18, 19, 20), (22, 21, 23)),
+    Coupling(CouplingKind.NECK_MIDDLE, (15, 16, 17, 18, 20), (19,)),
+    Coupling(CouplingKind.OTHER_THUMB, (31, 32), (34, 35)),
+    Coupling(CouplingKind.THUMB, (43, 44), (46, 47)),
+)
+"""The laws that hold for most of its clips."""
 
 
 _USUAL = {1: "x", 2: "xz", 3: "xyz"}

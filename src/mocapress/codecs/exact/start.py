@@ -1,4 +1,4 @@
-"""What the codec begins with: nothing, or what it had learned at the end of other clips."""
+"""What the codec starts from: nothing, or what it had learned by the end of other clips."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ class Start:
     columns: dict[int, list[float]] = field(default_factory=dict)
 
     def of(self, coded: Sequence[int]) -> Learned:
-        """Give it to a coder of these columns."""
+        """Hand it to a coder of these columns."""
         return self.shared, [self.columns.get(column, []) for column in coded]
 
     def take(self, coded: Sequence[int], learned: Learned) -> None:

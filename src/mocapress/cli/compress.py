@@ -1,0 +1,156 @@
+"""``compress``."""
+
+from enum import StrEnum
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mocapress.cli.options import Asf, Debug, Force, Inputs, Jobs, Json, Output
+
+if TYPE_CHECKING:
+    from mocapress.cli.batch import Job
+    from mocapress.codecs import Codec, Model
+
+
+class Packed(StrEnum):
+    """Kinds of compressed files."""
+
+    MCZ = "mcz"
+    JSON = "diffma.json"
+    JSON_XZ = "diffma.json.xz"
+
+
+_ENDINGS = {
+    Packed.MCZ: (".mcz",),
+    Packed.JSON: (".diffma.json", ".json"),
+    Packed.JSON_XZ: (".diffma.json.xz", ".xz"),
+}
+
+
+def compress(
+    inputs: Inputs,
+    output: Output = None,
+    codec: Annotated[
+        str | None,
+        typer.Option(
+            "--codec", help="Codec, e.g. diffma:bound=4. Usually lossless; diffma for JSON."
+        ),
+    ] = None,
+    level: Annotated[
+        int | None,
+        typer.Option("--level", min=1, max=9, help="1 (fast) to 9 (strong); as codec ID:level=N."),
+    ] = None,
+    model: Annotated[
+        Path | None,
+        typer.Option("--model", help="Model from mocapress train, needed again to decompress."),
+    ] = None,
+    to: Annotated[
+        Packed | None,
+        typer.Option("--to", help="Kind of file; else what the output's name says, or mcz."),
+    ] = None,
+    target_psnr: Annotated[
+        float | None,
+        typer.Option("--target-psnr", help="Choose diffma's bound for this PSNR.", metavar="DB"),
+    ] = None,
+    asf: Asf = None,
+    embed_asf: Annotated[
+        bool, typer.Option("--embed-asf", help="Store the skeleton of AMC files, too.")
+    ] = False,
+    jobs: Jobs = 1,
+    force: Force = False,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Compress motion files to .mcz or JSON, decoded again and compared before they are written."""
+    from mocapress import api
+    from mocapress.cli.batch import find, run
+    from mocapress.cli.models import open_model
+    from mocapress.cli.sizes import show_sizes, show_total
+    from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
+    from mocapress.codecs.diffma import DiffMA
+    from mocapress.container import diffma_json
+    from mocapress.formats import formats, suffixes
+
+    learned = open_model(model) if model else None
+    to = to or _kind_of(output)
+    refuse_other_kinds(output, _ENDINGS[to], known_endings())
+    made = _codec(codec, to, level, learned, target_psnr)
+    kinds = [of for of in formats() if of.split or (of.read_skeleton and made.lossless)]
+    files = plan(
+        find(inputs, suffixes(kinds)),
+        output,
+        partial(_compressed_name, to=to),
+        force=force,
+        json=json,
+        text=to is Packed.JSON,
+        reads=[asf, model],
+    )
+
+    def work(job: "Job") -> dict[str, Any]:
+        assert job.target is not None
+        source = job.opened()
+        facts: dict[str, Any] = {}
+        if to is Packed.MCZ:
+            compressed = api.compress_source(
+                source, made, asf_path=asf, embed_asf=embed_asf, model=learned
+            )
+            blob, loss = compressed.blob, compressed.loss
+            facts["largest_error"] = loss.most if loss else None
+            facts["psnr"] = loss.psnr if loss else None
+            facts["warning"] = compressed.warning
+        else:
+            assert isinstance(made, DiffMA)
+            blob = diffma_json.named(to, diffma_json.file_to_json(source, made, asf_path=asf))
+        job.outputs[job.target] = blob
+        return {
+            "output": str(job.target),
+            "raw_bytes": source.size,
+            "compressed_bytes": len(blob),
+            "ratio": round(source.size / len(blob), 3),
+            **facts,
+        }
+
+    run(files, work, threads=jobs, json=json, show=show_sizes, total=show_total, debug=debug)
+
+
+def _kind_of(output: str | None) -> Packed:
+    name = (output or "").lower()
+    return next((kind for kind in reversed(Packed) if name.endswith(f".{kind}")), Packed.MCZ)
+
+
+def _codec(
+    text: str | None,
+    to: Packed,
+    level: int | None,
+    learned: "Model | None",
+    target_psnr: float | None,
+) -> "Codec":
+    from dataclasses import replace
+
+    from mocapress import codecs
+    from mocapress.cli.batch import usage
+    from mocapress.codecs.diffma import DiffMA
+    from mocapress.errors import ParameterError
+
+    try:
+        made = codecs.codec(text or (codecs.DEFAULT_CODEC if to is Packed.MCZ else "diffma"))
+        if level is not None:
+            made = codecs.with_level(made, level)
+        if learned is not None:
+            codecs.learner(made, learned)
+        if target_psnr is not None:
+            if not isinstance(made, DiffMA):
+                raise ParameterError("--target-psnr is for a lossy codec", expected="diffma")
+            made = replace(made, target_psnr=target_psnr)
+        if to is not Packed.MCZ and not isinstance(made, DiffMA):
+            raise ParameterError(f"{made.id} makes no {to}", expected="diffma")
+    except ParameterError as error:
+        usage(f"--codec: {error}")
+    return made
+
+
+def _compressed_name(source: Path, to: Packed) -> Path:
+    name = source.name if to is Packed.MCZ else source.stem
+    return source.with_name(f"{name}.{to}")

@@ -1,0 +1,72 @@
+"""``decompress``."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mocapress.cli.options import Debug, Force, Inputs, Jobs, Json, Models, Output
+
+if TYPE_CHECKING:
+    from mocapress.cli.batch import Job
+
+
+def decompress(
+    inputs: Inputs,
+    output: Output = None,
+    models: Models = None,
+    jobs: Jobs = 1,
+    force: Force = False,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Restore the original files: byte for byte, or, of a lossy codec, with the decoded values."""
+    from mocapress import api
+    from mocapress.cli.batch import find, run
+    from mocapress.cli.models import open_models, places_for
+    from mocapress.cli.sizes import show_sizes, show_total
+    from mocapress.cli.targets import plan
+    from mocapress.container import diffma_json
+    from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES
+
+    given = open_models(models or [])
+    files = plan(
+        find(inputs, (".mcz", *JSON_SUFFIXES)),
+        output,
+        _original_name,
+        force=force,
+        json=json,
+        reads=models or [],
+    )
+
+    def work(job: "Job") -> dict[str, Any]:
+        assert job.target is not None
+        source = job.opened()
+        if source.kind == DIFFMA_JSON:
+            _, data = diffma_json.json_to_file(source.data)
+        else:
+            data = api.decompress(source, models=places_for(job, given))
+        job.outputs[job.target] = data
+        return {
+            "output": str(job.target),
+            "raw_bytes": len(data),
+            "compressed_bytes": source.size,
+        }
+
+    run(files, work, threads=jobs, json=json, show=show_sizes, total=show_total, debug=debug)
+
+
+def _original_name(source: Path) -> Path:
+    from mocapress.container import diffma_json
+    from mocapress.errors import MocapressError, ParameterError
+
+    if source.suffix.lower() == ".mcz":
+        return source.with_name(source.name[:-4])
+    stem = diffma_json.stem(source.name)
+    if stem == source.name:
+        raise ParameterError(
+            "cannot tell the output's name; -o gives it", file=str(source), expected="NAME.mcz"
+        )
+    try:
+        return source.with_name(f"{stem}.{diffma_json.format_of(source.read_bytes())}")
+    except MocapressError as error:
+        error.file = str(source)
+        raise

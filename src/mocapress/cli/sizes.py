@@ -1,0 +1,23 @@
+"""Lines that compare the sizes of originals and compressed files."""
+
+from mocapress.cli.batch import STREAM, Job
+
+
+def show_sizes(job: Job) -> None:
+    """Print a line for a file that was written."""
+    if job.target == STREAM:
+        return
+    lost = job.result.get("largest_error")
+    errors = "" if lost is None else f", errors up to {lost:.3g}"
+    print(f"{job.target}: {_sizes([job])}{errors}")
+
+
+def show_total(jobs: list[Job]) -> None:
+    """Print a line for all of them."""
+    print(f"{len(jobs)} files: {_sizes(jobs)}")
+
+
+def _sizes(jobs: list[Job]) -> str:
+    raw = sum(job.result["raw_bytes"] for job in jobs)
+    small = sum(job.result["compressed_bytes"] for job in jobs)
+    return f"{raw} <-> {small} bytes, {raw / small:.2f} : 1"

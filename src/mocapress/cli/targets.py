@@ -1,0 +1,160 @@
+"""Where the outputs of a command go; decided, and refused, before anything is written."""
+
+import os
+import sys
+import unicodedata
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+from mocapress.cli.batch import STREAM, Job, usage
+from mocapress.errors import MocapressError
+from mocapress.storage import is_stream
+
+
+def plan(
+    jobs: Sequence[Job],
+    output: str | None,
+    rename: Callable[[Path], Path],
+    *,
+    force: bool,
+    json: bool = False,
+    text: bool = True,
+    reads: Iterable[Path | None] = (),
+) -> list[Job]:
+    """Give each job its target; end with the exit code of wrong usage where one cannot be.
+
+    Parameters
+    ----------
+    jobs
+        What is to be worked on.
+    output
+        The file or folder that was asked for; of a folder or of many files it is a folder.
+    rename
+        Gives the path of an output beside its source.
+    force
+        Whether outputs may replace files.
+    json
+        Whether results go to stdout as JSON.
+    text
+        Whether outputs may go to a terminal.
+    reads
+        Further files that are read, which no output may replace.
+
+    Returns
+    -------
+    list
+        The jobs, without those that were named twice.
+
+    """
+    many = len(jobs) > 1 or any(job.in_folder for job in jobs)
+    if output == "-" or (output is None and jobs[0].source == STREAM):
+        _refuse_stdout(many=many, json=json, text=text or force)
+        jobs[0].target = STREAM
+        return [*jobs]
+    folder = _is_folder(output, many=many) if output else False
+    for job in jobs:
+        job.force = force
+        try:
+            job.target = _target(job, output, rename, folder=folder)
+        except (MocapressError, OSError) as error:
+            job.error = error
+    planned = [*{(job.source, job.target): job for job in jobs}.values()]
+    _refuse_equal(planned)
+    refuse_sources(planned, [*(job.source for job in planned), *reads])
+    return planned
+
+
+def refuse_other_kinds(output: str | None, allowed: Sequence[str], others: Iterable[str]) -> None:
+    """Refuse a file whose name says that it is something else than what is written to it."""
+    if output is None or Path(output).is_dir():
+        return
+    name = output.lower()
+    if name.endswith(tuple(others)) and not name.endswith(tuple(allowed)):
+        usage(f"-o {output}: the ending is that of another kind; expected {' or '.join(allowed)}")
+
+
+def known_endings() -> tuple[str, ...]:
+    """Give the endings of all kinds of files that mocapress knows."""
+    from mocapress.formats import formats, suffixes
+
+    return (*suffixes(formats()), ".mcz", ".mcm", ".json", ".json.xz")
+
+
+def _target(job: Job, output: str | None, rename: Callable[[Path], Path], *, folder: bool) -> Path:
+    if output is None:
+        return rename(job.source)
+    if not folder:
+        return Path(output)
+    return Path(output) / rename(job.source).relative_to(job.base)
+
+
+def _is_folder(output: str, *, many: bool) -> bool:
+    path = Path(output)
+    named = os.path.basename(output) in ("", ".", "..")  # noqa: PTH119 - Path drops the slash
+    if path.is_dir():
+        return True
+    if path.exists() and (many or named):
+        usage(f"-o {output} is not a folder, which many files need")
+    if many and not named and path.suffix.lower() in (".mcz", ".mcm", ".json", ".xz"):
+        usage(f"-o {output} looks like one file, and many are written; {output}/ makes a folder")
+    return many or named
+
+
+def _refuse_stdout(*, many: bool, json: bool, text: bool) -> None:
+    if many:
+        usage("stdout cannot take many outputs")
+    if json:
+        usage("stdout cannot take both the output and --json; -o gives the output a file")
+    if not text and sys.stdout.isatty():
+        usage("compressed data is not written to a terminal; --force does, -o - | ... pipes it")
+
+
+def _refuse_equal(jobs: Sequence[Job]) -> None:
+    """Refuse targets that are the same file, also where the file system takes names for equal."""
+    clashes = []
+    alike: dict[str, list[Job]] = defaultdict(list)
+    for job in jobs:
+        if job.target is not None and not _is_stream(job.target):
+            real = os.path.realpath(job.target)
+            alike[unicodedata.normalize("NFC", real.casefold())].append(job)
+    for group in alike.values():
+        if len(group) == 1:
+            continue
+        same: dict[object, list[Job]] = defaultdict(list)
+        for job in group:
+            found = _identity(job.target)
+            same[found or os.path.realpath(str(job.target))].append(job)
+            # Where they do exist already, the file system tells them apart. Else the first is
+            # written, and the second is not to replace it.
+            job.force = job.force and found is not None
+        for equal in same.values():
+            if len(equal) > 1:
+                named = ", ".join(str(job.source) for job in equal)
+                clashes.append(f"{equal[0].target} ({named})")
+    if clashes:
+        usage(f"several inputs have the same output; nothing was written: {'; '.join(clashes)}")
+
+
+def refuse_sources(jobs: Sequence[Job], reads: Iterable[Path | None]) -> None:
+    """Refuse targets that are files which are read, by whatever name."""
+    read = {_identity(path): path for path in reads}
+    for job in jobs:
+        found = _identity(job.target)
+        if found is not None and found in read and not _is_stream(job.target):
+            usage(f"{job.target} would overwrite an input, {read[found]}; nothing was written")
+
+
+def _identity(path: Path | None) -> tuple[int, int] | None:
+    try:
+        found = os.fstat(0) if path == STREAM else path.stat() if path else None
+    except OSError:
+        return None
+    return (found.st_dev, found.st_ino) if found else None
+
+
+def _is_stream(path: Path | None) -> bool:
+    try:
+        return path is None or is_stream(path)
+    except OSError:
+        return False

@@ -1,0 +1,38 @@
+"""``verify``."""
+
+from typing import TYPE_CHECKING, Any
+
+from mocapress.cli.options import Debug, Inputs, Jobs, Json, Models
+
+if TYPE_CHECKING:
+    from mocapress.cli.batch import Job
+
+
+def verify(
+    inputs: Inputs,
+    models: Models = None,
+    jobs: Jobs = 1,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Decode compressed files and check every checksum; exit code 3 when one is damaged."""
+    from mocapress import api
+    from mocapress.cli.batch import find, run
+    from mocapress.cli.models import open_models, places_for
+    from mocapress.container import diffma_json
+    from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES
+
+    files, given = find(inputs, (".mcz", *JSON_SUFFIXES)), open_models(models or [])
+
+    def work(job: "Job") -> dict[str, Any]:
+        source = job.opened()
+        if source.kind == DIFFMA_JSON:  # a layout is not needed to be sound
+            return {"raw_bytes": diffma_json.json_to_clip(source.data).values.nbytes, "ok": True}
+        restored = api.decompress(source, models=places_for(job, given))
+        return {"raw_bytes": len(restored), "ok": True}
+
+    run(files, work, threads=jobs, json=json, show=_show, failure_code=3, debug=debug)
+
+
+def _show(job: "Job") -> None:
+    print(f"{job.source}: {job.result['raw_bytes']} bytes, ok")

@@ -1,0 +1,67 @@
+"""What a format is: everything that the rest of mocapress knows of a kind of motion file."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
+
+from mocapress.formats.layout import Layout
+from mocapress.formats.problems import Problem
+from mocapress.motion import Clip, Skeleton
+
+
+class Split(NamedTuple):
+    """A motion file taken apart."""
+
+    clip: Clip
+    layout: Layout
+    problems: tuple[Problem, ...]
+    """Where the file departs from its format. What is no row is in the layout's tail."""
+
+
+def split_of(clip: Clip, layout: Layout, problems: Sequence[Problem], file: str | None) -> Split:
+    """Put a split together; the columns get the number formats that the layout found."""
+    columns = tuple(
+        replace(column, decimal=number_format)
+        for column, number_format in zip(clip.columns, layout.formats, strict=True)
+    )
+    named = replace(clip.with_columns(columns), name=Path(file).stem if file else "")
+    return Split(named, layout, tuple(problems))
+
+
+def _as_it_is(clip: Clip) -> Clip:
+    return clip
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Format:
+    """A format: one file makes one of these, the registry finds it.
+
+    Functions that a format does not have are None: an exporter has no ``split``, a format of
+    skeletons only ``read_skeleton``.
+    """
+
+    id: str
+    """Names the format in options and in compressed files, e.g. ``amc``."""
+    name: str
+    """For people, e.g. ``AMC``."""
+    suffixes: tuple[str, ...]
+    """Endings of file names in lower case, the usual one first."""
+    recognises: Callable[[bytes], bool]
+    """Tells from the first 64 KiB, without a byte order mark and blanks before them, whether a file
+    is of this format. What no format recognises goes by its suffix."""
+    split: Callable[[bytes, Skeleton | None, str | None], Split] | None = None
+    """Takes a file's bytes apart, given the skeleton of its companion and the file's name for
+    messages. Raises ``FormatError`` when not a single frame can be read."""
+    read_skeleton: Callable[[bytes, str | None], Skeleton] | None = None
+    """Reads a file that holds a skeleton and no motion; the name is for messages."""
+    fit: Callable[[Clip], Clip] = _as_it_is
+    """Converts any clip to one that the format can hold. Raises ``UnsupportedError``."""
+    write: Callable[[Clip], Mapping[str, bytes]] | None = None
+    """Prints a clip that was made to fit: contents by suffix, the file itself first, then what
+    belongs beside it. Numbers are printed in their columns' formats, else with the fewest digits.
+    """
+    timed: bool = True
+    """Whether files have to state their frame time."""
+    companion: str | None = None
+    """Id of the format in which the skeleton lies beside the file."""

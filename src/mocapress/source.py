@@ -1,0 +1,361 @@
+"""What a user names: a path, bytes or a stream, with what lies beside it.
+
+Whatever a command or a function does with a user's file begins here.
+"""
+
+import errno
+import os
+import re
+import stat
+import sys
+import warnings
+import weakref
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import BinaryIO, TypeVar
+
+import numpy as np
+
+from mocapress import formats
+from mocapress.errors import FormatError, MocapressError, MotionWarning, ParameterError
+from mocapress.formats import Format, Split
+from mocapress.formats.problems import Problem
+from mocapress.motion import Clip, Skeleton
+from mocapress.motion.columns import skeleton_columns
+
+Named = str | Path | bytes | bytearray | memoryview | BinaryIO
+"""What can be named: a path, the contents themselves, or a stream that is read to its end."""
+
+MCZ, MCM, DIFFMA_JSON = "mcz", "mcm", "diffma.json"
+"""Kinds of files that only mocapress writes, or (DiffMA JSON) that are no format of numbers."""
+JSON_SUFFIXES = (".diffma.json", ".diffma.json.xz")
+_MAGICS = {b"\x89MCZ": MCZ, b"\x89MCM": MCM}
+_XZ = b"\xfd7zXZ\x00"
+_HEAD = 2**16
+
+
+GIVEN, SAME_NAME, SUBJECT = "given", "same name", "subject"
+ONLY_ONE, EMBEDDED = "only one in the folder", "embedded"
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """The skeleton of a motion file that has none in itself."""
+
+    file: str
+    """Path; of an embedded one, that of the file it is embedded in."""
+    found: str
+    """``given``, ``same name``, ``subject``, ``only one in the folder`` or ``embedded``."""
+    read: Callable[[], bytes]
+    """Gives its contents."""
+
+
+class Source:
+    """A path, bytes or a stream.
+
+    Parameters
+    ----------
+    named
+        A path, the contents, or a binary stream, which is read to its end. A regular file is read
+        when and as far as it is asked for.
+    name
+        For messages, and to tell the kind by its suffix; without it, the path.
+
+    Raises
+    ------
+    OSError
+        When it cannot be opened or read.
+
+    """
+
+    def __init__(self, named: Named, name: str | None = None) -> None:
+        self.path = Path(named) if isinstance(named, str | Path) else None
+        self.name = name if name is not None else str(self.path or "")
+        self.used: Beside | None = None
+        """The skeleton that was used, of those that lie beside the file or in it."""
+        self.warnings: list[MotionWarning] = []
+        self._descriptor: int | None = None
+        if isinstance(named, bytes | bytearray | memoryview):
+            self._contents = bytes(named)
+        elif self.path is None:
+            self._contents = _drained(named)  # type: ignore[arg-type]
+        else:
+            self._open(self.path)
+
+    def _open(self, path: Path) -> None:
+        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0))
+        # Whatever is renamed to the path meanwhile, all reads are of the file that was opened.
+        weakref.finalize(self, os.close, descriptor)
+        mode = os.fstat(descriptor).st_mode
+        if stat.S_ISDIR(mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+        if stat.S_ISREG(mode):
+            self._descriptor = descriptor
+        else:
+            with os.fdopen(os.dup(descriptor), "rb") as stream:
+                self._contents = stream.read()
+
+    @property
+    def size(self) -> int:
+        """Number of bytes."""
+        if self._descriptor is None:
+            return len(self._contents)
+        return os.fstat(self._descriptor).st_size
+
+    def read(self, start: int = 0, stop: int | None = None) -> bytes:
+        """Give bytes [start, stop), or as many of them as there are.
+
+        Files are read plainly, never mapped into memory: one that another program cuts short
+        meanwhile gives fewer bytes instead of ending the process.
+        """
+        if self._descriptor is None:
+            whole = start == 0 and (stop is None or stop >= len(self._contents))
+            return self._contents if whole else self._contents[start:stop]
+        stop = self.size if stop is None else stop
+        parts = []
+        while start < stop and (part := os.pread(self._descriptor, stop - start, start)):
+            parts.append(part)
+            start += len(part)
+        return b"".join(parts) if len(parts) != 1 else parts[0]
+
+    @cached_property
+    def data(self) -> bytes:
+        """All bytes, read once."""
+        return self.read()
+
+    @cached_property
+    def kind(self) -> str:
+        """Id of a format, ``mcz``, ``mcm``, ``diffma.json``, or empty where it is none of them."""
+        head = self.read(0, _HEAD)
+        if head[:4] in _MAGICS:
+            return _MAGICS[head[:4]]
+        if self.name.lower().endswith(JSON_SUFFIXES):
+            return DIFFMA_JSON
+        found = formats.recognise(head, self.name)
+        if found is not None:
+            return found.id
+        return DIFFMA_JSON if head[:6] == _XZ or head[:64].lstrip()[:1] == b"{" else ""
+
+    @property
+    def format(self) -> Format | None:
+        """The format of a motion file; None for other files."""
+        known = self.kind and self.kind not in (MCZ, MCM, DIFFMA_JSON)
+        return formats.by_id(self.kind) if known else None
+
+    def split(
+        self,
+        asf_path: str | Path | None = None,
+        of: Format | None = None,
+        contents: bytes | None = None,
+    ) -> Split:
+        """Take a motion file apart, with the skeleton given or found beside it.
+
+        Parameters
+        ----------
+        asf_path
+            The skeleton's file, where the user names one.
+        of, contents
+            The motion file, where it is packed in this one.
+
+        Raises
+        ------
+        FormatError
+            When it is no motion file, when not a single frame can be read, or when the skeleton
+            that was given is broken or another's. One that was merely found is then left away,
+            with a warning.
+
+        """
+        of = of or self.format
+        if of is None or of.split is None:
+            known = formats.names(formats.readable())
+            raise FormatError("not a motion file", file=self.name or None, expected=known)
+        split, data = of.split, self.data if contents is None else contents
+
+        def taken_apart(skeleton: Skeleton | None) -> Split:
+            return split(data, skeleton, self.name or None)
+
+        parts = self.with_skeleton(of, taken_apart, asf_path)
+        return parts._replace(clip=self.told(parts.clip))
+
+    def with_skeleton(
+        self,
+        of: Format,
+        make: Callable[[Skeleton | None], T],
+        asf_path: str | Path | None = None,
+        embedded: bytes = b"",
+    ) -> T:
+        """Make something with the skeleton that belongs to this file; see ``used`` afterwards.
+
+        Parameters
+        ----------
+        of
+            The format of the file, or of what it was compressed from.
+        make
+            Makes it with a skeleton, or without; raises ``FormatError`` where the skeleton does not
+            fit.
+        asf_path
+            The skeleton's file, where the user names one.
+        embedded
+            The contents of a skeleton's file that is in this file.
+
+        """
+        companion = formats.by_id(of.companion) if of.companion else None
+        if companion is None or companion.read_skeleton is None:
+            return make(None)
+        beside = self._beside(companion, of, asf_path, embedded)
+        if beside is None:
+            return make(None)
+        certain = beside.found in (GIVEN, EMBEDDED)
+        try:
+            skeleton = companion.read_skeleton(beside.read(), beside.file)
+        except (FormatError, OSError) as error:
+            if certain:
+                raise
+            self._left_away("broken-skeleton", error, beside)
+            return make(None)
+        try:
+            made = make(skeleton)
+        except FormatError as error:
+            made = make(None)  # where this fails too, the fault is not the skeleton's
+            error.file, error.line, error.offset = beside.file, None, None
+            if certain:
+                raise error from None
+            self._left_away("foreign-skeleton", error, beside)
+            return made
+        self.used = beside
+        return made
+
+    def _beside(
+        self, companion: Format, of: Format, asf_path: str | Path | None, embedded: bytes
+    ) -> Beside | None:
+        if asf_path is not None:
+            return Beside(str(asf_path), GIVEN, Source(asf_path).read)
+        if embedded:
+            return Beside(self.name, EMBEDDED, lambda: embedded)
+        found = find_beside(self.path, companion.suffixes, of.suffixes) if self.path else None
+        if found is None:
+            return None
+        path, how = found
+        return Beside(str(path), how, lambda: Source(path).read())
+
+    def _left_away(self, name: str, error: FormatError | OSError, beside: Beside) -> None:
+        if isinstance(error, OSError):
+            error = FormatError(error.strerror or str(error), file=beside.file)
+        error.what += "; the skeleton is left away"
+        self.warn(name, error)
+
+    def accept(self, problems: Sequence[Problem], *, strict: bool = True) -> None:
+        """Refuse a file that has lost motion, where reading is strict; warn of all else.
+
+        Raises
+        ------
+        FormatError
+            With place, expected and found.
+
+        """
+        file = self.name or None
+        lost = next((problem for problem in problems if problem.loses_motion), None)
+        if strict and lost is not None:
+            raise lost.error(file)
+        for problem in problems:
+            self.warn(problem.name, problem.error(file))
+
+    def told(self, clip: Clip) -> Clip:
+        """Say in a clip's metadata which skeleton was used, and how it was found."""
+        if self.used is None:
+            return clip
+        facts = {"skeleton": self.used.file, "skeleton_found": self.used.found}
+        return replace(clip, metadata={**clip.metadata, **facts})
+
+    def warn_of_guess(self) -> None:
+        """Warn where the skeleton that was used was merely the only one in the folder."""
+        if self.used is not None and self.used.found == ONLY_ONE:
+            fact = MocapressError(
+                "the only skeleton in the folder was taken; it may be another's",
+                file=self.used.file,
+                expected=f"one named as {Path(self.name).name}, or one given",
+            )
+            self.warn("guessed-skeleton", fact)
+
+    def warn(self, name: str, fact: MocapressError) -> None:
+        """Warn of something, as from the line outside mocapress that led here, and keep it."""
+        warning = MotionWarning(name, fact)
+        self.warnings.append(warning)
+        frame, level = sys._getframe(), 1
+        while frame.f_back and frame.f_globals["__name__"].partition(".")[0] == "mocapress":
+            frame, level = frame.f_back, level + 1
+        warnings.warn(warning, stacklevel=level)
+
+
+def find_beside(
+    path: Path, suffixes: tuple[str, ...], own: tuple[str, ...] = ()
+) -> tuple[Path, str] | None:
+    """Find the file of the same name, of the subject (``01.asf`` of ``01_02.amc``), or the only.
+
+    Parameters
+    ----------
+    path
+        Of the motion file, or of what it was compressed to.
+    suffixes
+        Of the files looked for.
+    own
+        Of the motion file.
+
+    Returns
+    -------
+    tuple
+        The path, and how it was found: see ``Beside.found``.
+
+    """
+    try:
+        candidates = sorted(p for p in path.parent.iterdir() if p.name.lower().endswith(suffixes))
+    except OSError:
+        return None
+    stem = _without(_without(path.name.lower(), (".mcz",)), own)
+    names = {candidate: _without(candidate.name.lower(), suffixes) for candidate in candidates}
+    same = [c for c in candidates if names[c] == stem]
+    if same:
+        return same[0], SAME_NAME
+    subject = [c for c in candidates if re.match(re.escape(names[c]) + r"[_\-. ]", stem)]
+    if subject:
+        return max(subject, key=lambda c: len(names[c])), SUBJECT
+    return (candidates[0], ONLY_ONE) if len(candidates) == 1 else None
+
+
+def _without(name: str, suffixes: Iterable[str]) -> str:
+    ending = max((s for s in suffixes if name.endswith(s)), key=len, default="")
+    return name[: len(name) - len(ending)]
+
+
+def read(source: Source, asf_path: str | Path | None = None, *, strict: bool = True) -> Clip:
+    """Read a motion file; a skeleton alone gives a clip of it without frames.
+
+    Raises
+    ------
+    FormatError
+        When the file does not follow its format: with file, line, expected and found.
+
+    """
+    of, file = source.format, source.name or None
+    if of is not None and of.read_skeleton:
+        skeleton = of.read_skeleton(source.data, file)
+        columns = skeleton_columns(skeleton)
+        empty = np.empty((0, len(columns)))
+        return Clip.of(empty, columns, None, skeleton, Path(source.name).stem)
+    if of is None or of.split is None:
+        known = formats.names(tuple(f for f in formats.formats() if f.split or f.read_skeleton))
+        raise FormatError("not a motion file", file=file, expected=known)
+    parts = source.split(asf_path)
+    source.accept(parts.problems, strict=strict)
+    source.warn_of_guess()
+    return parts.clip
+
+
+def _drained(stream: BinaryIO) -> bytes:
+    contents = stream.read()
+    if not isinstance(contents, bytes):
+        raise ParameterError("a stream to read from", expected="one of bytes", found="text")
+    return contents
