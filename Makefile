@@ -7,7 +7,7 @@ CORPUS_SOURCE := ../shared/data
 SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -Icore
 FUZZ_RUNS ?= 100000
 sources := $(wildcard core/*/*.cpp core/*/*.hpp)
-headers := $(filter %.hpp,$(sources))
+headers := $(filter %.hpp,$(sources)) $(wildcard core/exact/data/*)
 kernels := $(filter-out core/python/% core/check/% core/fuzz/%,$(filter %.cpp,$(sources)))
 
 .PHONY: demo test check stub tests test-js browser sanitize fuzz bench wheel clean
@@ -70,7 +70,7 @@ browser:
 # A codec's kernels built in other ways, build/check/WAY/CODEC: each must print what
 # tests/golden/kernels_CODEC.txt says. MOCAPRESS_NO_CLONES turns run-time dispatch off, so that a
 # way is what its flags say; the usual one has it, and emulated processors choose.
-EXACT := -std=c++20 -ffp-contract=off -Wall -Wextra -Icore
+EXACT := -std=c++20 -ffp-contract=off -fno-math-errno -fno-trapping-math -Wno-psabi -Wall -Wextra -Icore
 ONE := -DMOCAPRESS_NO_CLONES
 check_usual := $(CXX) -O3 $(EXACT)
 check_o0 := $(CXX) -O0 $(EXACT) $(ONE)

@@ -68,9 +68,9 @@ def doubles(roles: Roles, _: Array) -> Roles:
 
 PARTS: dict[str, Change] = {
     "everything": lambda roles, _: roles,
-    "without geometry": lambda roles, _: replace(roles, places=False),
+    "without geometry": lambda roles, _: replace(roles, skeleton=0),
     "without laws and couplings": lambda roles, _: replace(roles, couplings=()),
-    "without either": lambda roles, _: replace(roles, places=False, couplings=()),
+    "without either": lambda roles, _: replace(roles, skeleton=0, couplings=()),
     "rounding noise predicted": predicted,
     "copies coded": coded,
     "float64 in place of decimal lines": doubles,

@@ -1,6 +1,6 @@
-"""Learns what `exact` begins with, where no model is given, and writes core/exact/start_tables.hpp.
+"""Learns what `exact` begins with, where no model is given, and writes core/exact/data/start_1.txt.
 
-    python benchmarks/exact_start.py CORPUS/amc/cmu [core/exact/start_tables.hpp]
+    python benchmarks/exact_start.py CORPUS/amc/cmu [core/exact/data/start_1.txt]
 
 Every other folder of AMC clips is learned from, coded one behind the other as if they were one: the
 shape of the distribution, and the numbers of columns of rounding noise. The rest of the clips tells
@@ -14,14 +14,10 @@ import mocapress as mp
 from mocapress.codecs.exact import Exact
 from mocapress.codecs.exact.start import start_of
 
-PREFIX = """// What the codec `exact` begins with; written by benchmarks/exact_start.py.
-#pragma once
-
-#include <array>
-#include <cstdint>
-
-namespace mocapress::exact {
-"""
+HEAD = (
+    "// Start, version 1: chances in 1/65536, by the node of a tree. "
+    "Written by benchmarks/exact_start.py.\n"
+)
 NODES = 64
 
 
@@ -29,26 +25,23 @@ def main(corpus: Path, target: Path) -> None:
     """Learn, and write the tables."""
     folders = sorted(path for path in corpus.iterdir() if path.is_dir())[::2]
     paths = [path for folder in folders for path in sorted(folder.glob("*.amc"))]
-    start = start_of(Exact(level=9).train(mp.read(path) for path in paths))
+    start = start_of(Exact(level=9).train(mp.read(path).main for path in paths))
     shape = start.shared[NODES : 2 * NODES]
     noise = next(numbers for numbers in start.columns.values() if len(numbers) == 4 * NODES)
     slow = noise[1::2]
     tables = {
-        "kFirstShape": ("that a bit of a bucket is 1", [value / 256 for value in shape]),
-        "kFirstNoiseKinds": ("that a bit of the kind of a noise is 0", slow[:NODES]),
-        "kFirstNoiseLengths": ("that a bit of its length is 0", slow[NODES:]),
+        "that a bit of a bucket is 1": [value / 256 for value in shape],
+        "that a bit of the kind of a noise is 0": slow[:NODES],
+        "that a bit of its length is 0": slow[NODES:],
     }
-    text = PREFIX
-    for name, (what, values) in tables.items():
-        text += f"\n// The chance {what}, in 1/65536, by the node of the tree.\n"
-        text += f"inline constexpr std::array<std::uint16_t, {NODES}> {name} = {{\n"
-        numbers = [f"{round(value)}," for value in values]
-        for row in range(0, NODES, 12):
-            text += "    " + " ".join(numbers[row : row + 12]) + "\n"
-        text = text[:-2] + "};\n"
-    target.write_text(text + "\n}  // namespace mocapress::exact\n")
+    text = HEAD
+    for what, values in tables.items():
+        numbers = [f"{value:.0f}" for value in values]
+        rows = [", ".join(numbers[i : i + 13]) for i in range(0, NODES, 13)]
+        text += f"// {what}\n" + "".join(f"  {row},\n" for row in rows)
+    target.write_text(text, encoding="utf-8")
     print(f"learned from {len(paths)} clips of {', '.join(folder.name for folder in folders)}")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(*sys.argv[2:3] or ["core/exact/start_tables.hpp"]))
+    main(Path(sys.argv[1]), Path(*sys.argv[2:3] or ["core/exact/data/start_1.txt"]))

@@ -1,6 +1,7 @@
 """Learn what core/exact/kinematics.cpp knows of the skeleton of CMU clips, and say how it helps.
 
-    python benchmarks/kinematic_weights.py corpus/amc/cmu --write core/exact/kinematics_tables.hpp
+    python benchmarks/kinematic_weights.py corpus/amc/cmu \
+        --write core/exact/data/skeleton_cmu_1.txt
     python benchmarks/kinematic_weights.py corpus/amc/cmu --measure
 
 docs/exact_kinematics.md explains the model. Geometry is the mean of the skeletons, weights are
@@ -9,7 +10,6 @@ left out. The same clips give the same numbers: nothing is drawn by chance.
 """
 
 import argparse
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -20,8 +20,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 import mocapress
-from mocapress.codecs.exact import Exact
-from mocapress.codecs.exact.skeletons import is_known
+from mocapress.codecs.exact import Exact, skeletons
 from mocapress.motion import Clip, Joint, Skeleton
 from mocapress.motion.kinematics import positions, rotations
 
@@ -36,6 +35,11 @@ KINDS = ("tx", "ty", "tz", "rx", "ry", "rz")
 BONES_OF_LIMBS = (1, 3, 3, 7, 7, 4, 4)
 LAWFUL = ("thorax", "head", "rthumb", "lthumb")  # what laws predict is no matter here
 USUAL = np.log(1e-2)  # a resistance of which nothing is known
+HEAD = (
+    "// CMU, version 1: the bones of the skeleton of the CMU motion capture database, then its "
+    "channels.\n// Written by benchmarks/kinematic_weights.py.\n// bone: parent, axis x y z, "
+    "start x y z, end x y z, place of tx ty tz rx ry rz, mass, inertia\n"
+)
 FAITH = 1e-3  # in the start of the fit, per squared unit of a logarithm
 
 
@@ -57,7 +61,9 @@ def clips_of(folder: Path, subjects: Sequence[str], most: int | None) -> list[Cl
         paths = sorted((folder / subject).glob("*.amc"))
         every = 1 if most is None else max(1, len(paths) // most)
         chosen = paths[::every][:most]
-        clips += [clip for clip in map(mocapress.read, chosen) if is_known(clip.columns)]
+        clips += [
+            clip for clip in map(mocapress.read, chosen) if skeletons.skeleton_of(clip.columns)
+        ]
     return clips
 
 
@@ -266,12 +272,8 @@ def report(
     )
 
 
-def tables(text: str, bones: Sequence[Bone], weights: Weights) -> str:
-    """Give core/exact/kinematics_tables.hpp with other numbers."""
-
-    def braced(numbers: Sequence[float]) -> str:
-        return "{" + ", ".join(f"{number:.4g}" for number in numbers) + "}"
-
+def table(bones: Sequence[Bone], weights: Weights) -> str:
+    """Write the data file of the format (docs/format/exact.md)."""
     rows, channels = [], []
     limbs = np.repeat(np.arange(len(BONES_OF_LIMBS)), BONES_OF_LIMBS)
     for b, bone in enumerate(bones):
@@ -279,16 +281,12 @@ def tables(text: str, bones: Sequence[Bone], weights: Weights) -> str:
         for kind in bone.channels:
             places[KINDS.index(kind)] = len(channels)
             resistance = np.exp(weights.resistances[len(channels)])
-            channels.append(f"    {{{b}, {limbs[b]}, {resistance:.4g}}},")
-        vectors = ", ".join(map(braced, (bone.axis, bone.start, bone.end, places)))
+            channels.append(f"  {b}, {limbs[b]}, {resistance:.4g},\n")
         mass, inertia = np.exp(weights.masses[b]), np.exp(weights.inertias[b])
-        rows.append(f"    {{{bone.parent}, {vectors}, {mass:.4g}, {inertia:.4g}}},  // {bone.name}")
-    for name, lines in (("kSkeletonBone", rows), ("kSkeletonChannel", channels)):
-        body = "\n".join(lines)
-        text = re.sub(
-            rf"({name} = {{{{\n).*?(\n}}}};)", rf"\g<1>{body}\g<2>", text, flags=re.DOTALL
-        )
-    return text
+        numbers = [bone.parent, *bone.axis, *bone.start, *bone.end, *places, mass, inertia]
+        told = ", ".join(f"{number:.4g}" for number in numbers)
+        rows.append(f"  {told},  // {bone.name}\n")
+    return HEAD + "".join(rows) + "// channel: bone, limb, resistance\n" + "".join(channels)
 
 
 def measure(clips: Sequence[Clip]) -> None:
@@ -297,7 +295,7 @@ def measure(clips: Sequence[Clip]) -> None:
     for clip in clips:
         bare = clip.with_columns(tuple(replace(c, unit="") for c in clip.columns))
         for i, own in enumerate((clip, bare)):
-            totals[i] += sum(len(chunk.payload) for chunk in Exact(level=9).encode(own).chunks)
+            totals[i] += sum(len(chunk.payload) for chunk in Exact(level=9).encode(own.main).chunks)
     print(f"{len(clips)} clips: {totals[1]:.0f} bytes without, {totals[0]:.0f} with the skeleton")
 
 
@@ -305,7 +303,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path, help="of folders of AMC clips, one per subject")
     parser.add_argument("--leave-out", default=LEFT_OUT, help="subjects")
-    parser.add_argument("--write", type=Path, help="the table to write")
+    parser.add_argument("--write", type=Path, help="the data file to write")
     parser.add_argument("--measure", action="store_true", help="code the clips that are left out")
     options = parser.parse_args()
     left_out = options.leave_out.split()
@@ -321,7 +319,7 @@ def main() -> None:
     others = clips_of(options.folder, left_out, MOST_CLIPS)
     report("left out", bones, stretches_of(bones, others, moving), weights, moving)
     if options.write:
-        options.write.write_text(tables(options.write.read_text(), bones, weights))
+        options.write.write_text(table(bones, weights), encoding="utf-8")
     return None
 
 

@@ -1,6 +1,6 @@
 """Fit the laws of core/exact/law.cpp on a folder of CMU clips, and say how far they reach.
 
-    python benchmarks/solver_laws.py corpus/amc/cmu --write core/exact/law_tables.hpp
+    python benchmarks/solver_laws.py corpus/amc/cmu --write core/exact/data
 
 The laws are explained in docs/exact_laws.md. Subjects that are left out of the fits are what the
 printed tables are about. The same clips give the same numbers: nothing is drawn by chance.
@@ -101,48 +101,27 @@ def thumb_share(clips: Sequence[mocapress.Clip]) -> float:
     return float(np.concatenate(held).mean())
 
 
-def array(name: str, values: Array, comment: str) -> str:
-    """Write a C++ array."""
-    numbers = [f"{value:.10g}" for value in values]
-    lines = [", ".join(numbers[i : i + 6]) for i in range(0, len(numbers), 6)]
-    body = ",\n    ".join(lines)
-    return (
-        f"// {comment}\ninline constexpr std::array<double, {len(values)}> {name} = {{\n"
-        f"    {body}}};\n"
+def table(name: str, laws: list[Branch], twist: Array, middle: Array) -> str:
+    """Write a data file of the format (docs/format/exact.md)."""
+    text = (
+        f"// {name.capitalize()}, version 1: the branches of the y law (35 numbers of g, 35 of h), "
+        "the twist of the\n// last joint (22), that of the middle joint (12). Written by "
+        "benchmarks/solver_laws.py.\n"
     )
-
-
-def header(laws: dict[str, list[Branch]], twist: dict[str, Array], middle: dict[str, Array]) -> str:
-    """Write core/exact/law_tables.hpp."""
     parts = [
-        (
-            "// The numbers of the laws in law.cpp, written by benchmarks/solver_laws.py.\n"
-            "// clang-format off\n#pragma once\n\n#include <array>\n\n"
-            "namespace mocapress::exact {\n\n"
-            "// A branch of the y law: polynomials of degree 4 in three bends.\n"
-            "struct Branch {\n  std::array<double, 35> near;  // g\n"
-            "  std::array<double, 35> root;  // h\n};\n"
-        )
+        (f"branch {i}, {'gh'[half]}", numbers)
+        for i, branch in enumerate(laws)
+        for half, numbers in enumerate(branch)
     ]
-    for name, found in laws.items():
-        rows = []
-        for branch in found:
-            halves = []
-            for half in branch:
-                numbers = [f"{value:.10g}" for value in half]
-                halves.append(
-                    ",\n      ".join(", ".join(numbers[i : i + 6]) for i in range(0, 35, 6))
-                )
-            rows.append("    {{" + "},\n     {".join(halves) + "}}")
-        title = name.capitalize()
-        parts.append(
-            f"inline constexpr std::array<Branch, {len(found)}> k{title}Branches = {{{{\n"
-            + ",\n".join(rows)
-            + "}};\n"
-        )
-        parts.append(array(f"k{title}Twist", twist[name], "The twist of the last joint."))
-        parts.append(array(f"k{title}Middle", middle[name], "The twist of the joint before it."))
-    return "\n".join([*parts, "}  // namespace mocapress::exact\n"])
+    for what, values in (
+        *parts,
+        ("twist of the last joint", twist),
+        ("twist of the middle joint", middle),
+    ):
+        numbers = [f"{value:.10g}" for value in values]
+        rows = [", ".join(numbers[i : i + 6]) for i in range(0, len(numbers), 6)]
+        text += f"// {what}\n" + "".join(f"  {row},\n" for row in rows)
+    return text
 
 
 def main() -> None:
@@ -150,7 +129,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path, help="AMC clips named SUBJECT_NUMBER.amc")
     parser.add_argument("--leave-out", default="09,16,35", help="subjects that are not fitted on")
-    parser.add_argument("--write", type=Path, help="the header to write")
+    parser.add_argument("--write", type=Path, help="the folder of data files")
     arguments = parser.parse_args()
     clips = read(arguments.folder)
     left_out = arguments.leave_out.split(",")
@@ -173,8 +152,9 @@ def main() -> None:
     print("| subject | share |\n|---|---:|")
     for subject, own_clips in clips.items():
         print(f"| {subject} | {100 * thumb_share(own_clips):.2f} |")
-    if arguments.write:
-        arguments.write.write_text(header(laws, twist, middle), encoding="utf-8")
+    for name in CHAINS if arguments.write else ():
+        text = table(name, laws[name], twist[name], middle[name])
+        (arguments.write / f"{name}_1.txt").write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -120,7 +120,7 @@ def test_some_frames_need_only_their_chunks(samples: Path) -> None:
     blob = bytearray(mp.compress(samples / "cmu_01_01.amc"))
     blob[-100] ^= 1  # in the last chunk
     assert mp.load(bytes(blob), frames=slice(100, 200)).frames == 100
-    with pytest.raises(mp.CorruptError, match="chunk 1: wrong checksum"):
+    with pytest.raises(mp.CorruptError, match="chunk 5: wrong checksum"):
         mp.load(bytes(blob))
 
 

@@ -44,7 +44,7 @@ def measure(
         for t in CLUSTERS:
             progress(f"{table}, t = {t}")
             codec = App(t=t, table=table)
-            encoded = [codec.encode(clip) for clip, _ in clips]
+            encoded = [codec.encode(clip.main, skeleton=clip.skeleton) for clip, _ in clips]
             size = sum(len(chunk.payload) for one in encoded for chunk in one.chunks)
             indices = sum(one.index_bytes for one in encoded)
             error = [average_prediction_error(clip, codec) for clip, _ in clips]

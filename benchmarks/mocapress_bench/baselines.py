@@ -11,8 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.codecs.app import App, Coding
-from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
-from mocapress.motion import Clip, Column
+from mocapress.codecs.contract import (
+    NO_OTHERS,
+    Capabilities,
+    Chunk,
+    Codec,
+    Encoded,
+    Model,
+    Others,
+)
+from mocapress.motion import Column, Skeleton, Stream
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +29,7 @@ class _OneAlpha(Codec):
 
     id: ClassVar[str]
     alpha: ClassVar[float]
-    lossless: ClassVar[bool] = True
+    can: ClassVar[Capabilities] = Capabilities(lossless=True)
 
     mantissa_limit: int = App().mantissa_limit
     chunk: int = App().chunk
@@ -31,9 +39,16 @@ class _OneAlpha(Codec):
         """Settings of the compiled coder."""
         return Coding((self.alpha,), 1, self.mantissa_limit, self.chunk)
 
-    def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:  # noqa: ARG002
-        """Code a clip, as ``App.encode`` does."""
-        return self.coding.encode(clip)
+    def encode(
+        self,
+        stream: Stream,
+        *,
+        skeleton: Skeleton | None = None,
+        model: Model | None = None,  # noqa: ARG002
+        others: Others = NO_OTHERS,  # noqa: ARG002
+    ) -> Encoded:
+        """Code a stream, as ``App.encode`` does."""
+        return self.coding.encode(stream, skeleton)
 
     def decode(
         self,
@@ -42,9 +57,11 @@ class _OneAlpha(Codec):
         columns: Sequence[Column],
         *,
         model: Model | None = None,  # noqa: ARG002
+        others: Others = NO_OTHERS,  # noqa: ARG002
+        stop: int | None = None,
     ) -> NDArray[np.float64]:
         """Decode chunks, as ``App.decode`` does."""
-        return self.coding.decode(header, chunks, columns)
+        return self.coding.decode(header, chunks, columns)[:stop]
 
 
 @dataclass(frozen=True, slots=True)

@@ -78,7 +78,7 @@ def _codec_contenders() -> dict[str, Codec]:
     found: dict[str, Codec] = {}
     for name in codecs.codec_ids():
         made = codecs.codec(name)
-        if made.lossless and codecs.has_level(made):
+        if made.lossless and made.can.levels:
             found |= {f"{name}:level={n}": codecs.with_level(made, n) for n in _LEVELS}
         elif made.lossless:
             found[name] = made

@@ -23,9 +23,17 @@ from numpy.typing import NDArray
 from mocapress import _core
 from mocapress.codecs.app import App
 from mocapress.codecs.app.coding import make_plan
-from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
+from mocapress.codecs.contract import (
+    NO_OTHERS,
+    Capabilities,
+    Chunk,
+    Codec,
+    Encoded,
+    Model,
+    Others,
+)
 from mocapress.errors import CorruptError
-from mocapress.motion import Clip, Column
+from mocapress.motion import Column, Skeleton, Stream
 
 _BLOCK = 16
 _DC = np.zeros(1)
@@ -38,24 +46,31 @@ class Dct(Codec):
     """The 16-frame DCT scheme, lossless; one chunk for the whole clip."""
 
     id: ClassVar[str] = "mpeg4-dct"
-    lossless: ClassVar[bool] = True
+    can: ClassVar[Capabilities] = Capabilities(lossless=True)
 
     mantissa_limit: int = App().mantissa_limit
 
-    def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:  # noqa: ARG002
-        """Code a clip, (F, C) float64."""
-        values = np.ascontiguousarray(clip.values, dtype=np.float64)
-        plan = make_plan(clip.columns, [-1] * clip.channels, [0] * clip.channels)
+    def encode(
+        self,
+        stream: Stream,
+        *,
+        skeleton: Skeleton | None = None,  # noqa: ARG002
+        model: Model | None = None,  # noqa: ARG002
+        others: Others = NO_OTHERS,  # noqa: ARG002
+    ) -> Encoded:
+        """Code a stream, (F, C) float64."""
+        values = np.ascontiguousarray(stream.values, dtype=np.float64)
+        plan = make_plan(stream.columns, [-1] * stream.channels, [0] * stream.channels)
         precisions = _core.app_precisions(values, plan)
         plan[:, 1] = precisions
         coefficients = _forward(values)
         parts = self._pack_coefficients(coefficients)
-        nearly = _inverse(coefficients, clip.frames, plan)
+        nearly = _inverse(coefficients, stream.frames, plan)
         missing = _ordinals(values, plan) - _ordinals(nearly, plan)
         parts.append(_core.encode_differences(missing.T.ravel()))
         sizes = np.array([len(part) for part in parts], dtype=_SIZES)
-        chunk = Chunk(0, clip.frames, b"".join((sizes.tobytes(), *parts)))
-        return Encoded(bytes(precisions), (chunk,) if clip.frames else ())
+        chunk = Chunk(0, stream.frames, b"".join((sizes.tobytes(), *parts)))
+        return Encoded(bytes(precisions), (chunk,) if stream.frames else ())
 
     def decode(
         self,
@@ -64,6 +79,8 @@ class Dct(Codec):
         columns: Sequence[Column],
         *,
         model: Model | None = None,  # noqa: ARG002
+        others: Others = NO_OTHERS,  # noqa: ARG002
+        stop: int | None = None,
     ) -> NDArray[np.float64]:
         """Decode the chunk to (F, C) float64."""
         plan = make_plan(columns, [-1] * len(columns), list(header))
@@ -71,7 +88,7 @@ class Dct(Codec):
             return np.empty((0, len(columns)))
         (chunk,) = chunks
         try:
-            return self._decode(chunk, plan)
+            return self._decode(chunk, plan)[:stop]
         except ValueError as error:
             raise CorruptError(f"DCT chunk: {error}") from error
 

@@ -6,7 +6,6 @@ from itertools import zip_longest
 from pathlib import Path
 
 from mocapress.codecs import Codec, Model
-from mocapress.codecs.contract import Trainable
 from mocapress.errors import FormatError, ParameterError
 from mocapress.models import load_model, train
 from mocapress.motion import Clip
@@ -94,7 +93,7 @@ def given(paths: Sequence[Path], only: str, file: Path) -> list[Learned]:
 def _learners(only: str) -> dict[str, Codec]:
     found: dict[str, Codec] = {}
     for name, contender in contenders(only)[0].items():
-        if isinstance(contender, Tool | Rival) or not isinstance(contender, Trainable):
+        if isinstance(contender, Tool | Rival) or not contender.can.trains:
             continue
         if only or getattr(contender, "level", _STRONGEST) == _STRONGEST:
             found[name] = contender

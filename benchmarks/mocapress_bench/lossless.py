@@ -98,7 +98,9 @@ def _codec_row(
 ) -> Row:
     source = Source(path)
     (clip, layout, _), split_s = _best(source.split, repeat)
-    encoded, encode_s = _best(lambda: codec.encode(clip, model=model), repeat)
+    encoded, encode_s = _best(
+        lambda: codec.encode(clip.main, skeleton=clip.skeleton, model=model), repeat
+    )
     blob, pack_s = _best(
         lambda: pack_file(
             kind=Kind[layout.format.upper()],

@@ -35,7 +35,7 @@ def main(path: Path, name: str) -> None:
             packed = contender.compress(clip.values)
             values = contender.decompress(packed, (clip.frames, clip.channels))
         else:
-            encoded = contender.encode(clip)
+            encoded = contender.encode(clip.main, skeleton=clip.skeleton)
             values = contender.decode(encoded.header, encoded.chunks, clip.columns)
         layout.join(values)
     print(before, _peak() + _peak_of_commands())

@@ -6,7 +6,7 @@
 #include "check/motion.hpp"
 #include "exact/codec.hpp"
 #include "exact/joint.hpp"
-#include "exact/kinematics_tables.hpp"
+#include "exact/tables.hpp"
 
 namespace check = mocapress::check;
 namespace exact = mocapress::exact;

@@ -1,6 +1,6 @@
 #include "exact/blend.hpp"
 
-#include <algorithm>
+#include "numbers/vector_clones.hpp"
 
 namespace mocapress::exact {
 namespace {
@@ -8,49 +8,68 @@ namespace {
 constexpr std::array kFadings = {0.94, 0.985, 0.998};
 constexpr double kRidge = 1;
 constexpr double kErrorRate = 0.05;
+constexpr double kMostSquared = 25;
 constexpr double kFarthest = 6;  // an error beyond so many scales counts as one of them
+
+// What a memory made of the values: its running error, and of each chain the last variable and the
+// weight of this frame.
+MOCAPRESS_VECTOR_CLONES
+void judge(const Block* values, const Block* means, const Block* scales, const Block* guesses,
+           Block* errors, Block* near, std::size_t stride, Block* weights, std::size_t blocks) {
+  for (std::size_t b = 0; b < blocks; ++b, near += stride) {
+    const Block error = ((values[b] - means[b]) - guesses[b]) / scales[b];
+    const Block square = error * error;
+    errors[b] +=
+        kErrorRate * ((square > kMostSquared ? kMostSquared + Block{} : square) - errors[b]);
+    // A wild value moves the weights no further than the farthest one that is likely.
+    Block cut = error < -kFarthest ? -kFarthest + Block{} : error;
+    cut = cut > kFarthest ? kFarthest + Block{} : cut;
+    *near = cut * scales[b] + guesses[b];
+    weights[b] = 1 / (scales[b] * scales[b]);
+  }
+}
 
 }  // namespace
 
-Blend::Blend(std::size_t predictors, std::size_t from, std::size_t to, std::size_t memories)
-    : predictors_(predictors), from_(from), to_(to) {
-  if (predictors > 1) {
-    for (std::size_t k = 0; k < memories; ++k) {
-      chains_.emplace_back(predictors, kFadings[k], kRidge);
-    }
+Blends::Blends(std::size_t channels, std::size_t predictors, std::size_t memories)
+    : predictors_(predictors), means_(channels, 0), values_(channels, 0), scales_(channels, 1) {
+  if (predictors < 2) return;
+  for (std::size_t k = 0; k < memories; ++k) {
+    memories_.push_back({ParallelChains(channels, predictors, kFadings[k], kRidge),
+                         Lanes(channels, 0), Lanes(channels, 1), Lanes(channels, 0)});
   }
-  errors_.fill(1);
 }
 
-double Blend::predict(std::span<const double> predictions) {
-  mean_ = 0;
-  for (std::size_t i = from_; i < to_; ++i) mean_ += predictions[i];
-  mean_ /= static_cast<double>(to_ - from_);
-  if (chains_.empty()) return mean_;
+double Blends::predict(std::size_t channel, std::span<const double> predictions, std::size_t from,
+                       std::size_t to) {
+  double mean = 0;
+  for (std::size_t i = from; i < to; ++i) mean += predictions[i];
+  mean /= static_cast<double>(to - from);
+  means_[channel] = mean;
+  if (memories_.empty()) return mean;
   double weights = 0;
   double sum = 0;
-  for (std::size_t k = 0; k < chains_.size(); ++k) {
+  for (Memory& memory : memories_) {
     // The first one's distance follows from the others.
-    Chain& chain = chains_[k];
-    chain.begin();
-    for (std::size_t i = 1; i < predictors_; ++i) chain.see(i - 1, predictions[i] - mean_);
-    guesses_[k] = chain.predicted(predictors_ - 1);
-    const double square = errors_[k] * errors_[k] + 1e-12;
+    for (std::size_t i = 1; i < predictors_; ++i) {
+      memory.chains.see(channel, i - 1, predictions[i] - mean);
+    }
+    const double guess = memory.chains.predicted(channel);
+    memory.guesses[channel] = guess;
+    const double square = memory.errors[channel] * memory.errors[channel] + 1e-12;
     const double weight = 1 / (square * square);
     weights += weight;
-    sum += weight * guesses_[k];
+    sum += weight * guess;
   }
-  return mean_ + sum / weights;
+  return mean + sum / weights;
 }
 
-void Blend::learn(double value, double scale) {
-  for (std::size_t k = 0; k < chains_.size(); ++k) {
-    const double error = (value - mean_ - guesses_[k]) / scale;
-    errors_[k] += kErrorRate * (std::min(error * error, 25.0) - errors_[k]);
-    // A wild value moves the weights no further than the farthest one that is likely.
-    const double near = std::clamp(error, -kFarthest, kFarthest) * scale + guesses_[k];
-    chains_[k].see(predictors_ - 1, near);
-    chains_[k].learn(1 / (scale * scale));
+void Blends::learn() {
+  for (Memory& memory : memories_) {
+    judge(values_.blocks(), means_.blocks(), scales_.blocks(), memory.guesses.blocks(),
+          memory.errors.blocks(), memory.chains.last_values(), memory.chains.stride(),
+          memory.weights.blocks(), values_.count_blocks());
+    memory.chains.learn(memory.weights.blocks());
   }
 }
 

@@ -2,41 +2,55 @@
 //
 // The predictors' distances from a mean are the variables of a chain whose last variable is the
 // value's distance: least squares over a fading past, each frame counting by how precise it is.
+// Channels with equally many predictors learn together.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
-#include "exact/chain.hpp"
+#include "exact/parallel_chains.hpp"
+#include "numbers/lanes.hpp"
 
 namespace mocapress::exact {
 
-class Blend {
+class Blends {
  public:
   static constexpr std::size_t kMostMemories = 3;
 
-  // Of the predictors, only those from <= i < to make up the mean, which is trusted at first.
   // `memories`: how many pasts of different lengths to learn from, up to kMostMemories.
-  Blend(std::size_t predictors, std::size_t from, std::size_t to, std::size_t memories);
+  Blends(std::size_t channels, std::size_t predictors, std::size_t memories);
 
-  double predict(std::span<const double> predictions);
+  // Of the predictions, only those from <= i < to make up the mean, which is trusted at first.
+  double predict(std::size_t channel, std::span<const double> predictions, std::size_t from,
+                 std::size_t to);
   // `scale`: how far off the value was to be expected.
-  void learn(double value, double scale);
+  void see(std::size_t channel, double value, double scale) {
+    values_[channel] = value;
+    scales_[channel] = scale;
+  }
+  // All channels' values have been seen.
+  void learn();
 
   template <class Visit>
-  void visit(Visit&& each) {
-    for (auto& chain : chains_) chain.visit(each);
+  void visit(std::size_t channel, Visit&& each) {
+    for (auto& memory : memories_) memory.chains.visit(channel, each);
   }
 
  private:
+  struct Memory {
+    ParallelChains chains;
+    Lanes guesses;
+    Lanes errors;  // running mean of the squared error
+    Lanes weights;
+  };
+
   std::size_t predictors_;
-  std::size_t from_;
-  std::size_t to_;
-  std::vector<Chain> chains_;  // one per memory
-  double mean_ = 0;
-  std::array<double, kMostMemories> guesses_{};
-  std::array<double, kMostMemories> errors_;  // running mean of each one's squared error
+  std::vector<Memory> memories_;
+  Lanes means_;
+  Lanes values_;
+  Lanes scales_;
 };
 
 }  // namespace mocapress::exact

@@ -1,85 +1,108 @@
 #include "exact/chain.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "numbers/vector_clones.hpp"
 
 namespace mocapress::exact {
 namespace {
 
-constexpr double kTiny = 1e-13;    // keeps the gain of a variable that never moves finite
-constexpr std::size_t kShort = 8;  // not worth a call that chooses the instruction set
+constexpr double kTiny = 1e-13;       // keeps the gain of a variable that never moves finite
+constexpr std::size_t kTogether = 4;  // chains that learn side by side
 
-inline void add_scaled_any(double* __restrict to, const double* __restrict from, double factor,
-                           std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) to[i] += factor * from[i];
-}
+// One chain's part of a step.
+struct Rows {
+  std::size_t size;
+  double fading;
+  Block* column;  // of the triangle
+  double* diagonal;
+  Block* rest;
+  double alpha;
+};
 
-inline void update_any(double* __restrict triangle, double* __restrict diagonal,
-                       double* __restrict rest, std::size_t count, double fading, double alpha) {
-  for (std::size_t j = 0; j < count; ++j) {
-    const double p = rest[j];
-    const double faded = fading * diagonal[j];
-    const double grown = faded + alpha * (p * p);
-    const double gain = alpha * p / (grown + kTiny);
-    alpha = alpha * (faded + kTiny) / (grown + kTiny);
-    diagonal[j] = grown;
-    const std::size_t below = count - j - 1;
-    double* __restrict later = rest + j + 1;
-    if (p != 0) {
-      for (std::size_t i = 0; i < below; ++i) {
-        const double left = later[i] - p * triangle[i];
-        later[i] = left;
-        triangle[i] += gain * left;
-      }
-    }
-    triangle += below;
+// Step j of a chain.
+MOCAPRESS_IN_PLACE void step(Rows& chain, std::size_t j) {
+  const std::size_t first = j / kLanes;
+  const std::size_t blocks = blocks_of(chain.size);
+  const double p = chain.rest[first][j % kLanes];
+  const double faded = chain.fading * chain.diagonal[j];
+  const double grown = faded + chain.alpha * (p * p);
+  const double gain = chain.alpha * p / (grown + kTiny);
+  chain.alpha = chain.alpha * (faded + kTiny) / (grown + kTiny);
+  chain.diagonal[j] = grown;
+  chain.rest[first][j % kLanes] = 0;  // so that nothing is added up to row j
+  for (std::size_t b = first; b < blocks; ++b) {
+    const Block left = chain.rest[b] - p * *chain.column;
+    chain.rest[b] = left;
+    *chain.column++ += gain * left;
   }
 }
 
 MOCAPRESS_VECTOR_CLONES
-void add_scaled(double* to, const double* from, double factor, std::size_t count) {
-  add_scaled_any(to, from, factor, count);
+void see_run(Block* predictions, const Block* columns, std::size_t first, const double* values,
+             double* seen, std::size_t count, std::size_t blocks) {
+  for (std::size_t j = first; j < first + count; ++j, ++values) {
+    seen[j] = *values;
+    const std::size_t begin = j / kLanes;
+    const double innovation = *values - predictions[begin][j % kLanes];
+    for (std::size_t b = begin; b < blocks; ++b) predictions[b] += innovation * *columns++;
+  }
 }
 
+// While one chain waits for its division, the others go on. Longer chains come first.
 MOCAPRESS_VECTOR_CLONES
-void update(double* triangle, double* diagonal, double* rest, std::size_t count, double fading,
-            double alpha) {
-  update_any(triangle, diagonal, rest, count, fading, alpha);
+void update(Rows* chains, std::size_t count) {
+  for (std::size_t j = 0; j < chains[0].size; ++j) {
+    for (std::size_t k = 0; k < count && j < chains[k].size; ++k) step(chains[k], j);
+  }
 }
 
 }  // namespace
 
 Chain::Chain(std::size_t count, double fading, double ridge)
-    : fading_(fading),
+    : size_(count),
+      fading_(fading),
       diagonal_(count, ridge),
       offsets_(count),
-      predictions_(count),
-      values_(count),
-      rest_(count) {
+      predictions_(count, 0),
+      values_(count, 0),
+      rest_(count, 0) {
   std::size_t size = 0;
   for (std::size_t j = 0; j < count; ++j) {
     offsets_[j] = size;
-    size += count - j - 1;
+    size += blocks_of(count) - j / kLanes;
   }
-  triangle_.assign(size, 0);
+  triangle_.resize(size);
 }
 
-void Chain::begin() { std::fill(predictions_.begin(), predictions_.end(), 0.0); }
+void Chain::begin() { std::fill_n(predictions_.blocks(), blocks_of(size_), Block{}); }
 
-void Chain::see(std::size_t variable, double value) {
-  values_[variable] = value;
-  const double innovation = value - predictions_[variable];
-  if (innovation == 0) return;
-  const std::size_t later = size() - variable - 1;
-  (later < kShort ? add_scaled_any : add_scaled)(predictions_.data() + variable + 1,
-                                                 column(variable), innovation, later);
+void Chain::see(std::size_t first, std::span<const double> values) {
+  if (values.empty()) return;
+  see_run(predictions_.blocks(), column_blocks(first), first, values.data(), values_.data(),
+          values.size(), blocks_of(size_));
 }
 
 void Chain::learn(double weight) {
-  rest_ = values_;
-  (size() <= kShort ? update_any : update)(triangle_.data(), diagonal_.data(), rest_.data(), size(),
-                                           fading_, weight);
+  Chain* const self = this;
+  learn_all(std::span(&self, 1), std::span(&weight, 1));
+}
+
+void Chain::learn_all(std::span<Chain* const> chains, std::span<const double> weights) {
+  for (std::size_t i = 0; i < chains.size();) {
+    Rows rows[kTogether];
+    const std::size_t count = std::min(kTogether, chains.size() - i);
+    for (std::size_t k = 0; k < count; ++k, ++i) {
+      Chain& chain = *chains[i];
+      std::copy_n(chain.values_.blocks(), blocks_of(chain.size_), chain.rest_.blocks());
+      rows[k] = {
+          chain.size_,          chain.fading_, chain.triangle_.data(), chain.diagonal_.data(),
+          chain.rest_.blocks(), weights[i]};
+    }
+    std::ranges::stable_sort(std::span(rows).first(count), std::greater(), &Rows::size);
+    update(rows, count);
+  }
 }
 
 }  // namespace mocapress::exact

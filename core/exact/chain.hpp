@@ -9,7 +9,10 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
+
+#include "numbers/lanes.hpp"
 
 namespace mocapress::exact {
 
@@ -18,13 +21,15 @@ class Chain {
   // `fading` is lambda; `ridge` the variance that every variable is taken to have at first.
   Chain(std::size_t count, double fading, double ridge);
 
-  std::size_t size() const { return diagonal_.size(); }
+  std::size_t size() const { return size_; }
 
   // A frame: begin, then for every variable in order: predicted (where it is asked for) and see;
   // then learn.
   void begin();
   double predicted(std::size_t variable) const { return predictions_[variable]; }
-  void see(std::size_t variable, double value);
+  void see(std::size_t variable, double value) { see(variable, std::span(&value, 1)); }
+  // Variables that follow each other.
+  void see(std::size_t first, std::span<const double> values);
   // `weight`: how much this frame counts.
   void learn(double weight);
 
@@ -32,22 +37,32 @@ class Chain {
     return values_[variable] - predictions_[variable];
   }
 
+  // Lets chains learn a frame each, several at a time, since none waits for another.
+  static void learn_all(std::span<Chain* const> chains, std::span<const double> weights);
+
   template <class Visit>
   void visit(Visit&& each) {
-    for (auto& factor : triangle_) each(factor);
-    for (auto& variance : diagonal_) each(variance);
+    for (std::size_t j = 0; j < size_; ++j) {
+      for (std::size_t i = j + 1; i < size_; ++i) each(column(j)[i]);
+    }
+    for (std::size_t j = 0; j < size_; ++j) each(diagonal_[j]);
   }
 
  private:
-  double* column(std::size_t variable) { return triangle_.data() + offsets_[variable]; }
+  // The column of a variable, from the block that the variable stands in; zeros up to it.
+  Block* column_blocks(std::size_t variable) { return triangle_.data() + offsets_[variable]; }
+  double* column(std::size_t variable) {
+    return reinterpret_cast<double*>(column_blocks(variable)) - kLanes * (variable / kLanes);
+  }
 
+  std::size_t size_;
   double fading_;
-  std::vector<double> diagonal_;
+  Lanes diagonal_;
   std::vector<std::size_t> offsets_;
-  std::vector<double> triangle_;  // L below its diagonal, column by column
-  std::vector<double> predictions_;
-  std::vector<double> values_;
-  std::vector<double> rest_;
+  Blocks triangle_;  // L below its diagonal, column by column
+  Lanes predictions_;
+  Lanes values_;
+  Lanes rest_;
 };
 
 }  // namespace mocapress::exact

@@ -7,27 +7,24 @@
 namespace mocapress::exact {
 namespace {
 
-constexpr double kRidge = 1e-2;
-constexpr double kUsualRate = 0.02;
-constexpr double kMostUnusual = 100;
 // Products of angles are scaled to be about as large as angles.
 constexpr double kProductScale = 1.0 / 30;
 
 }  // namespace
 
-Frames::Frames(std::size_t channels) : levels_(channels * kKept), guesses_(channels) {
-  for (std::size_t age = 0; age < rows_.size(); ++age) rows_[age] = age * channels;
+Frames::Frames(std::size_t channels)
+    : moves_(channels, 0), bends_(channels, 0), guesses_(channels, 0) {
+  rows_.fill(Lanes(channels, 0));
 }
 
 void Frames::next() { std::rotate(rows_.begin(), rows_.end() - 1, rows_.end()); }
 
-void Frames::set(std::size_t channel, double level) { levels_[rows_[0] + channel] = level; }
-
 Expert::Expert(ExpertPlan plan, std::size_t channels)
     : plan_(std::move(plan)),
-      chain_(plan_.variables.size(), plan_.fading, kRidge),
+      chain_(plan_.variables.size(), plan_.fading, kChainRidge),
       target_(channels, -1),
-      usual_(plan_.variables.size(), kRidge) {
+      values_(plan_.variables.size()),
+      usual_(plan_.variables.size(), kChainRidge) {
   for (std::size_t i = 0; i < plan_.variables.size(); ++i) {
     const Variable& variable = plan_.variables[i];
     if (variable.kind == Variable::Kind::target) {
@@ -37,12 +34,20 @@ Expert::Expert(ExpertPlan plan, std::size_t channels)
 }
 
 double Expert::value(const Variable& variable, const Frames& frames) const {
-  if (variable.kind == Variable::Kind::guess) return frames.guess(variable.channels[0]);
-  if (variable.kind != Variable::Kind::product) {
-    return frames.difference(variable.channels[0], plan_.order, variable.age);
+  switch (variable.kind) {
+    case Variable::Kind::known:
+    case Variable::Kind::target:
+      return plan_.order == 1 ? frames.move(variable.channels[0])
+                              : frames.bend(variable.channels[0]);
+    case Variable::Kind::past:
+      return frames.difference(variable.channels[0], plan_.order, variable.age);
+    case Variable::Kind::guess:
+      return frames.guess(variable.channels[0]);
+    case Variable::Kind::product:
+      break;
   }
   double products[3] = {};
-  for (int age = 0; age <= plan_.order; ++age) {
+  for (std::size_t age = 0; age <= static_cast<std::size_t>(plan_.order); ++age) {
     double product = 1 / kProductScale;
     for (int i = 0; i < variable.count; ++i) {
       product *= frames.level(variable.channels[i], age) * kProductScale;
@@ -54,7 +59,10 @@ double Expert::value(const Variable& variable, const Frames& frames) const {
 }
 
 void Expert::see_until(std::size_t end, const Frames& frames) {
-  for (; seen_ < end; ++seen_) chain_.see(seen_, value(plan_.variables[seen_], frames));
+  if (seen_ >= end) return;
+  for (std::size_t i = seen_; i < end; ++i) values_[i] = value(plan_.variables[i], frames);
+  chain_.see(seen_, std::span(values_).subspan(seen_, end - seen_));
+  seen_ = end;
 }
 
 void Expert::begin() {
@@ -71,19 +79,17 @@ double Expert::predict(std::size_t channel, const Frames& frames) {
   return extrapolated + chain_.predicted(variable);
 }
 
-void Expert::learn(const Frames& frames) {
+double Expert::weigh(const Frames& frames) {
   see_until(plan_.variables.size(), frames);
-  // A frame that is further off than usual counts for less.
   double unusual = 0;
   int targets = 0;
   for (std::size_t i = 0; i < plan_.variables.size(); ++i) {
     if (plan_.variables[i].kind != Variable::Kind::target) continue;
-    const double square = chain_.innovation(i) * chain_.innovation(i);
-    unusual += std::min(square / (usual_[i] + 1e-12), kMostUnusual);
-    usual_[i] += kUsualRate * (square - usual_[i]);
+    const double innovation = chain_.innovation(i);
+    unusual += unusualness(innovation * innovation, usual_[i]);
     ++targets;
   }
-  chain_.learn(1 / std::sqrt(unusual / std::max(targets, 1) + 0.05));
+  return weight_of_frame(unusual, std::max(targets, 1));
 }
 
 }  // namespace mocapress::exact

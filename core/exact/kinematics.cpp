@@ -33,7 +33,7 @@ double bounded(double number) {
 }
 
 bool moves(int bone, int other) {
-  while (other > bone) other = kSkeletonBone[static_cast<std::size_t>(other)].parent;
+  while (other > bone) other = kCmu.bones[static_cast<std::size_t>(other)].parent;
   return other == bone;
 }
 
@@ -48,7 +48,7 @@ Kinematics::Kinematics(std::span<const Column> columns) : channel_of_(columns.si
     if (place >= kSkeletonChannels || std::exchange(taken[place], true)) {
       throw std::invalid_argument("a place that the skeleton does not have");
     }
-    const int bone = kSkeletonChannel[place].bone;
+    const int bone = kCmu.channels[place].bone;
     Channel channel{
         c, std::ldexp(1.0, columns[c].exponent), place, static_cast<std::size_t>(bone), {}, size};
     for (std::size_t i = 0; i < channels_.size(); ++i) {
@@ -66,7 +66,7 @@ Kinematics::Kinematics(std::span<const Column> columns) : channel_of_(columns.si
   pushes_.resize(channels_.size());
   for (std::size_t b = 0; b < kBones; ++b) {
     axes_[b] = kIdentity;
-    for (const std::size_t axis : {2, 1, 0}) turn(axes_[b], axis, kSkeletonBone[b].axis[axis]);
+    for (const std::size_t axis : {2, 1, 0}) turn(axes_[b], axis, kCmu.bones[b].axis[axis]);
   }
 }
 
@@ -92,7 +92,7 @@ void Kinematics::begin(const Frames& frames) {
 // Bones, and how the channels move them, which is told by the pose that is taken last.
 void Kinematics::stand(const Numbers& numbers, Pose& pose) {
   for (std::size_t b = 0; b < kBones; ++b) {
-    const SkeletonBone& bone = kSkeletonBone[b];
+    const SkeletonBone& bone = kCmu.bones[b];
     Matrix frame = axes_[b];
     Vector start{};
     if (bone.parent >= 0) {
@@ -123,8 +123,8 @@ void Kinematics::stand(const Numbers& numbers, Pose& pose) {
 // Every bone with all that hangs on it. It is pushed to where its end, and its frame, were going.
 void Kinematics::weigh() {
   for (std::size_t b = 0; b < kBones; ++b) {
-    const double mass = kSkeletonBone[b].mass;
-    const double inertia = kSkeletonBone[b].inertia;
+    const double mass = kCmu.bones[b].mass;
+    const double inertia = kCmu.bones[b].inertia;
     const Vector& end = expected_.ends[b];
     const double square = dot(end, end);
     const Vector going = sum(scaled(last_.ends[b], 2), scaled(earlier_.ends[b], -1));
@@ -143,7 +143,7 @@ void Kinematics::weigh() {
         torque};
   }
   for (std::size_t b = kBones; b-- > 1;) {
-    Body& whole = bodies_[static_cast<std::size_t>(kSkeletonBone[b].parent)];
+    Body& whole = bodies_[static_cast<std::size_t>(kCmu.bones[b].parent)];
     const Body& part = bodies_[b];
     whole.mass += part.mass;
     whole.moment = sum(whole.moment, part.moment);
@@ -171,7 +171,7 @@ void Kinematics::fill() {
       const Twist& twist = twists_[channels_[before].place];
       *row++ = dot(twist.linear, linear) + dot(twist.angular, angular);
     }
-    *row = dot(own.linear, linear) + dot(w, angular) + kSkeletonChannel[channel.place].resistance;
+    *row = dot(own.linear, linear) + dot(w, angular) + kCmu.channels[channel.place].resistance;
     pushes_[k] = dot(own.linear, body.force) + dot(w, body.torque);
   }
 }

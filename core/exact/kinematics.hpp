@@ -14,7 +14,7 @@
 
 #include "exact/codec.hpp"
 #include "exact/expert.hpp"
-#include "exact/kinematics_tables.hpp"
+#include "exact/tables.hpp"
 #include "motion/vector.hpp"
 
 namespace mocapress::exact {

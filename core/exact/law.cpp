@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "exact/law_tables.hpp"
+#include "exact/tables.hpp"
 #include "numbers/arithmetic.hpp"
 
 namespace mocapress::exact {
@@ -100,13 +100,13 @@ double linear(const double* coefficients, const Vector& bends) {
 }
 
 std::span<const Branch> branches(LawKind kind) {
-  if (kind == LawKind::spine) return kSpineBranches;
-  return kNeckBranches;
+  if (kind == LawKind::spine) return kSpine.branches;
+  return kNeck.branches;
 }
 
 std::span<const double> twist_table(LawKind kind) {
-  if (kind == LawKind::spine) return kSpineTwist;
-  return kNeckTwist;
+  if (kind == LawKind::spine) return kSpine.twist;
+  return kNeck.twist;
 }
 
 constexpr Vector kUp = {0, 1, 0};
@@ -156,7 +156,7 @@ void Law::begin(const double* sources) {
 // The second joint's twist, which is about its turn y, is odd in that of the first and in how far
 // the joints leave a plane; the latter depends on y.
 void Law::begin_middle(const double* sources) {
-  const auto& table = kind_ == LawKind::spine_middle ? kSpineMiddle : kNeckMiddle;
+  const auto& table = kind_ == LawKind::spine_middle ? kSpine.middle : kNeck.middle;
   const auto first = rotation(sources);
   const double turn = twist(kIdentity, first);
   const double bend = 1 - dot(kUp, first[1]);

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -20,6 +21,7 @@
 #include "exact/kinematics.hpp"
 #include "exact/lawful.hpp"
 #include "exact/noise.hpp"
+#include "exact/own.hpp"
 #include "exact/plan.hpp"
 #include "exact/residual.hpp"
 #include "exact/spread.hpp"
@@ -40,8 +42,10 @@ struct Channel {
   std::vector<std::size_t> experts;
   std::optional<Turns> turns;
   Lawful* law;  // or none
-  Blend blend;
-  Spread spread;
+  Blends* blends = nullptr;
+  std::size_t blend = 0;  // its place in `blends`
+  std::size_t from = 0;   // what a blend trusts at first: the predictors from <= i < to
+  std::size_t to = 0;
   Choice<Lawful::kPredictions + 1> choice;  // of the law's predictions and the blend
 };
 
@@ -61,36 +65,34 @@ inline void take(std::uint32_t& value, float from) {
 class Model {
  public:
   explicit Model(const Clip& clip)
-      : noise_(clip.columns), count_(noise_.first()), frames_(count_), residual_(count_) {
+      : noise_(clip.columns),
+        count_(noise_.first()),
+        own_(count_),
+        frames_(count_),
+        spreads_(count_),
+        residual_(count_) {
     const auto columns = clip.columns;
     const auto known = columns.first(count_);
     if (knows_skeleton(known, clip.level)) kinematics_.emplace(known);
-    for (auto& plan : plans(known, clip.couplings, clip.level)) {
-      experts_.emplace_back(std::move(plan), count_);
-    }
+    Plans plan = plans(known, clip.couplings, clip.level);
+    for (auto& expert : plan.experts) experts_.emplace_back(std::move(expert), count_);
     for (std::size_t c = 0; c < count_; ++c) {
       const NumberLine line(columns[c].line, columns[c].digits);
-      std::vector<std::size_t> own;
-      for (std::size_t e = 0; e < experts_.size(); ++e) {
-        if (experts_[e].predicts(c)) own.push_back(e);
+      std::vector<std::size_t> experts;
+      for (std::size_t e = 0; e <= experts_.size(); ++e) {
+        if (e == plan.before_own) experts.push_back(kOwn);
+        if (e < experts_.size() && experts_[e].predicts(c)) experts.push_back(e);
       }
       const double unit = std::ldexp(1.0, columns[c].exponent);
-      channels_.push_back(
-          {line, unit, own, turns_of(columns[c]), nullptr, Blend(1, 0, 1, 0), Spread(), {}});
+      channels_.push_back({line, unit, experts, turns_of(columns[c]), nullptr});
     }
     for (const Coupling& coupling : clip.couplings) {
       if (coupling.kind == 0) continue;
       laws_.push_back(std::make_unique<Lawful>(coupling, columns));
       for (const auto target : coupling.targets) channels_[target].law = laws_.back().get();
     }
-    for (auto& channel : channels_) {
-      const std::size_t usual = channel.experts.size();
-      const std::size_t all = usual + (channel.law ? Lawful::kPredictions : 0);
-      const bool sure = channel.law != nullptr && channel.law->sure();
-      const std::size_t memories = clip.level >= 8 ? 3 : 1;
-      channel.blend =
-          sure ? Blend(all, usual, usual + 1, memories) : Blend(all, 0, usual, memories);
-    }
+    gather_blends(clip.level >= 8 ? Blends::kMostMemories : 1);
+    for (auto& expert : experts_) chains_.push_back(&expert.chain());
     predictions_.resize(experts_.size() + Lawful::kPredictions + 1);
     begin_with(clip.start);
   }
@@ -113,9 +115,16 @@ class Model {
     frames_.next();
     if (first_ || side.chance(kNoCut, cut)) return code_first_frame(side, row);
     for (auto& expert : experts_) expert.begin();
+    own_.begin(frames_);
+    spreads_.begin();
     if (kinematics_) kinematics_->begin(frames_);
     for (std::size_t c = 0; c < count_; ++c) row[c] = code_number(side, c, row[c]);
-    for (auto& expert : experts_) expert.learn(frames_);
+    weights_.clear();
+    for (auto& expert : experts_) weights_.push_back(expert.weigh(frames_));
+    Chain::learn_all(chains_, weights_);
+    own_.learn(frames_);
+    for (auto& blends : blends_) blends.learn();
+    spreads_.learn();
   }
 
  private:
@@ -127,8 +136,8 @@ class Model {
   template <class Visit>
   void visit_column(std::size_t c, Visit&& each) {
     if (c >= count_) return noise_.visit(c, each);
-    channels_[c].spread.visit(each);
-    channels_[c].blend.visit(each);
+    spreads_.visit(c, each);
+    channels_[c].blends->visit(channels_[c].blend, each);
     if (channels_[c].law != nullptr) channels_[c].choice.visit(each);
   }
 
@@ -149,6 +158,29 @@ class Model {
     }
   }
 
+  // Channels with equally many predictors are blended together.
+  void gather_blends(std::size_t memories) {
+    std::map<std::size_t, std::size_t> counts;
+    for (auto& channel : channels_) {
+      const std::size_t usual = channel.experts.size();
+      const bool sure = channel.law != nullptr && channel.law->sure();
+      channel.from = sure ? usual : 0;
+      channel.to = sure ? usual + 1 : usual;
+      channel.blend = counts[predictors(channel)]++;
+    }
+    blends_.reserve(counts.size());
+    for (const auto& [count, channels] : counts) {
+      blends_.emplace_back(channels, count, memories);
+      for (auto& channel : channels_) {
+        if (predictors(channel) == count) channel.blends = &blends_.back();
+      }
+    }
+  }
+
+  static std::size_t predictors(const Channel& channel) {
+    return channel.experts.size() + (channel.law != nullptr ? Lawful::kPredictions : 0);
+  }
+
   static std::optional<Turns> turns_of(const Column& column) {
     if (column.turns == 0) return std::nullopt;
     return Turns(column.turns == 1 ? -180 : 0);
@@ -158,7 +190,7 @@ class Model {
   void code_first_frame(Side& side, double* row) {
     for (std::size_t c = 0; c < count_; ++c) {
       row[c] = residual_.code_first(side, channels_[c].line, row[c]);
-      for (int age = 0; age < Frames::kKept; ++age) {
+      for (std::size_t age = 0; age < Frames::kKept; ++age) {
         frames_.next();
         frames_.set(c, level(c, row[c]));
       }
@@ -172,11 +204,12 @@ class Model {
     if (kinematics_) frames_.set_guess(c, kinematics_->guess(c, frames_));
     const std::size_t count = channel.experts.size();
     for (std::size_t i = 0; i < count; ++i) {
-      const double predicted = experts_[channel.experts[i]].predict(c, frames_);
-      predictions_[i] = predicted - frames_.level(c, 1);
+      const std::size_t expert = channel.experts[i];
+      predictions_[i] = expert == kOwn ? own_.move(c)
+                                       : experts_[expert].predict(c, frames_) - frames_.level(c, 1);
     }
     if (channel.law != nullptr) channel.law->predict(c, frames_, predictions_.data() + count);
-    double blended = channel.blend.predict(predictions_);
+    double blended = channel.blends->predict(channel.blend, predictions_, channel.from, channel.to);
     const bool unsure = channel.law != nullptr && !channel.law->sure();
     if (unsure) {
       predictions_[count + Lawful::kPredictions] = blended;
@@ -187,19 +220,19 @@ class Model {
     double turned = channel.turns ? channel.turns->left(expected) : 0;
     const double step = channel.line.step(expected - turned) * channel.unit;
     const double loose = channel.law != nullptr ? channel.law->looseness() : 1;
-    const double scale = loose * channel.spread.scale(doubt(channel, blended, step) / loose,
-                                                      (kFloor * step + kTiny) / loose, activity_);
+    const double scale = loose * spreads_.scale(c, doubt(channel, blended, step) / loose,
+                                                (kFloor * step + kTiny) / loose);
     const double width = (scale + kRounding * step) / channel.unit;
     if (channel.turns) turned = channel.turns->code(side, expected, width, number);
     const double coded = residual_.code(side, c, channel.line, expected - turned, width, number);
     const double before = frames_.level(c, 1) / channel.unit;
     const double now = level(c, channel.turns ? coded + Turns::since(before, coded) : coded);
     const double error = now - frames_.level(c, 1);
-    channel.blend.learn(error, scale + step);
+    channel.blends->see(channel.blend, error, scale + step);
     if (unsure) {
       channel.choice.learn(predictions_.data() + count, error, kFarthest * (scale + step));
     }
-    channel.spread.learn((error - blended) / loose, activity_);
+    spreads_.see(c, (error - blended) / loose);
     frames_.set(c, now);
     return coded;
   }
@@ -215,6 +248,7 @@ class Model {
   }
 
   static constexpr double kTiny = 1e-9;
+  static constexpr std::size_t kOwn = ~std::size_t{0};  // in place of an expert
 
   static double sane(double level) {
     return level > -kLargest && level < kLargest ? level : level >= kLargest ? kLargest : -kLargest;
@@ -228,13 +262,17 @@ class Model {
   NoiseColumns noise_;
   std::size_t count_;  // columns that are predicted
   std::vector<Expert> experts_;
+  OwnChains own_;
   std::vector<Channel> channels_;
   std::vector<std::unique_ptr<Lawful>> laws_;
   std::optional<Kinematics> kinematics_;
+  std::vector<Blends> blends_;
   Frames frames_;
+  Spreads spreads_;
   Residual residual_;
-  Activity activity_;
   std::vector<double> predictions_;
+  std::vector<Chain*> chains_;
+  std::vector<double> weights_;
   bool first_ = true;
 };
 

@@ -12,7 +12,7 @@
 
 #include "coding/numbers.hpp"
 #include "exact/codec.hpp"
-#include "exact/start_tables.hpp"
+#include "exact/tables.hpp"
 #include "numbers/line.hpp"
 
 namespace mocapress::exact {
@@ -30,8 +30,8 @@ class Noise {
   }
 
  private:
-  BitTree<6> kinds_{kFirstNoiseKinds};
-  BitTree<6> lengths_{kFirstNoiseLengths};
+  BitTree<6> kinds_{kFirst.noise_kinds};
+  BitTree<6> lengths_{kFirst.noise_lengths};
 };
 
 // The columns of noise of a clip, which come last.

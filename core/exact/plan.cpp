@@ -1,8 +1,9 @@
 #include "exact/plan.hpp"
 
 #include <algorithm>
+#include <utility>
 
-#include "exact/kinematics_tables.hpp"
+#include "exact/tables.hpp"
 
 namespace mocapress::exact {
 namespace {
@@ -68,7 +69,7 @@ void add_guessed(std::vector<ExpertPlan>& plans, std::span<const Column> columns
                  double fading) {
   const auto limb = [&](std::size_t channel) {
     const int place = columns[channel].place;
-    return place < 0 ? -1 : kSkeletonChannel[static_cast<std::size_t>(place)].limb;
+    return place < 0 ? -1 : kCmu.channels[static_cast<std::size_t>(place)].limb;
   };
   for (std::size_t from = 0, to = 0; from < columns.size(); from = to) {
     while (to < columns.size() && limb(to) == limb(from)) ++to;
@@ -115,8 +116,7 @@ bool knows_skeleton(std::span<const Column> columns, int level) {
          std::ranges::any_of(columns, [](const Column& column) { return column.place >= 0; });
 }
 
-std::vector<ExpertPlan> plans(std::span<const Column> columns, std::span<const Coupling> couplings,
-                              int level) {
+Plans plans(std::span<const Column> columns, std::span<const Coupling> couplings, int level) {
   const std::size_t channels = columns.size();
   std::vector<ExpertPlan> made;
   if (knows_skeleton(columns, level)) {
@@ -125,13 +125,13 @@ std::vector<ExpertPlan> plans(std::span<const Column> columns, std::span<const C
   } else {
     add_limbs(made, channels, 2, 0.94);
   }
-  if (level >= 3) add_blocks(made, channels, 1, 1, 3, 0.99);
+  const std::size_t before_own = made.size();
   if (level >= 7) add_limbs(made, channels, 1, 0.94);
   if (level >= 8) add_blocks(made, channels, kMostTogether, 1, 1, 0.998);
   for (const auto& coupling : couplings) {
     if (coupling.kind == 0) made.push_back(coupled(coupling, 0.9998));
   }
-  return made;
+  return {std::move(made), before_own};
 }
 
 }  // namespace mocapress::exact

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "coding/sides.hpp"
-#include "exact/start_tables.hpp"
+#include "exact/tables.hpp"
 
 namespace mocapress::exact {
 namespace {
@@ -35,7 +35,7 @@ template <class Nodes>
 Nodes first_shape() {
   Nodes nodes;
   for (std::size_t node = 1; node < kBuckets; ++node) {
-    nodes[node].of_one = std::uint32_t{kFirstShape[node]} << 16;
+    nodes[node].of_one = std::uint32_t{kFirst.shape[node]} << 16;
   }
   return nodes;
 }

@@ -4,42 +4,50 @@
 // ln(scale) is a weighted sum of what is known before the value: how far off the channel was lately
 // (at three speeds), how far off the channels before it are in this very frame, and how much the
 // predictors disagree. The weights follow the gradient of the code length under a Student-t
-// distribution of four degrees of freedom.
+// distribution of four degrees of freedom. Whatever can wait is done for all channels at once.
 #pragma once
 
 #include <array>
+#include <cstddef>
+
+#include "numbers/lanes.hpp"
 
 namespace mocapress::exact {
 
-// What all channels of a frame share.
-struct Activity {
-  double level = 0;  // running mean of ln|error / scale|, over the channels one after the other
-};
-
-class Spread {
+class Spreads {
  public:
+  explicit Spreads(std::size_t channels);
+
+  // A frame: begin, for every channel in order scale and see, then learn.
+  void begin();
   // `disagreement`: mean distance of the predictors from the final prediction; `floor`: a small
   // part of the distance between neighbouring numbers.
-  double scale(double disagreement, double floor, const Activity& activity);
-
-  void learn(double error, Activity& activity);
+  double scale(std::size_t channel, double disagreement, double floor);
+  void see(std::size_t channel, double error);
+  void learn();
 
   template <class Visit>
-  void visit(Visit&& each) {
-    for (auto& weight : weights_) each(weight);
+  void visit(std::size_t channel, Visit&& each) {
+    for (auto& weights : weights_) each(weights[channel]);
   }
 
  private:
-  static constexpr int kFeatures = 6;
+  static constexpr std::size_t kFeatures = 6;
 
-  // Found by training on many clips; any channel moves on from there.
-  std::array<double, kFeatures> weights_ = {-0.1, 0.4, 0.2, 0.5, 0.15, 0.03};
-  std::array<double, kFeatures> features_{};
-  double fast_ = 0;
-  double middle_ = 0;
-  double slow_ = 0;
-  double last_ = 0;
-  double scale_ = 1;
+  // The features that depend on nothing of this frame but the floor.
+  void look_back(std::size_t channel, double floor);
+
+  std::array<Lanes, kFeatures> weights_;
+  std::array<Lanes, kFeatures> features_;
+  Lanes fast_, middle_, slow_;  // running means of the error's size
+  Lanes floors_;                // of this frame, or of the last one as long as it is not known
+  Lanes middles_;               // logarithms
+  Lanes sums_;                  // of the features that look back
+  Lanes scales_;
+  Lanes errors_;
+  Lanes squares_;        // of the errors, in scales
+  Lanes last_;           // how far off the value was, against the scale
+  double activity_ = 0;  // the same, a running mean over the channels one after the other
   int seen_ = 0;
 };
 

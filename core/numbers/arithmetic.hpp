@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "numbers/lanes.hpp"
+
 namespace mocapress {
 
 inline constexpr double kLn2 = 0.6931471805599453;
@@ -22,6 +24,19 @@ inline double natural_log(double value) {
   const double series =
       x * (1.441949 + x * (-0.7091 + x * (0.415023 + x * (-0.192401 + x * 0.044529))));
   return (static_cast<double>(exponent) + series) * kLn2;
+}
+
+// The same of eight.
+MOCAPRESS_IN_PLACE Block natural_log(Block values) {
+  using Bits = std::uint64_t __attribute__((vector_size(sizeof(Block))));
+  const Bits bits = std::bit_cast<Bits>(values);
+  // A whole number below 2^52 in the lowest bits of 2^52 as a double.
+  const Block exponents =
+      (std::bit_cast<Block>((bits >> 52) | 0x4330000000000000) - 4503599627370496.0) - 1023.0;
+  const Block x = std::bit_cast<Block>((bits & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
+  const Block series =
+      x * (1.441949 + x * (-0.7091 + x * (0.415023 + x * (-0.192401 + x * 0.044529))));
+  return (exponents + series) * kLn2;
 }
 
 // e^value for -700 <= value <= 700.

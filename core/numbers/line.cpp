@@ -110,6 +110,7 @@ bool line_exists(int line, int digits) {
 NumberLine::NumberLine(Line line, int digits) : line_(line), digits_(digits) {
   if (line == Line::significant) per_decade_ = 9 * integer_power(10, digits - 1);
   if (line == Line::decimals || printed()) scale_ = power_of_ten(digits);
+  step_ = 1 / scale_;
   if (!printed()) return;
   if (line == Line::degrees32) unit_ = kDegreesPerRadian;
   float coarse = 0x1p-126f;
@@ -143,12 +144,30 @@ std::int64_t NumberLine::decade(int exponent) const {
   return std::int64_t{exponent - kLowestPower} * per_decade_ + 1;
 }
 
+void NumberLine::turn_to(double magnitude) const {
+  constexpr int kFarthest = 20;
+  const int exponent = decimal_exponent(magnitude);
+  const int decimals = digits_ - 1 - exponent;
+  last_ = Decade();
+  if (exponent < -kFarthest || decimals < 0 || decimals > kMostExactPower) return;
+  last_.low = power_of_ten(exponent);
+  last_.high = power_of_ten(exponent + 1);
+  last_.scale = power_of_ten(decimals);
+  last_.step = power_of_ten(-decimals);
+  last_.first = decade(exponent);
+  last_.base = last_.first - per_decade_ / 9;
+}
+
 // On the line of significant digits: 0, then decade by decade d.ddd x 10^exponent.
 std::int64_t NumberLine::magnitude_place(double magnitude) const {
+  if (last_.holds(magnitude)) {
+    return last_.base + static_cast<std::int64_t>(rounded(magnitude * last_.scale));
+  }
   if (line_ == Line::decimals) return decimal_place(magnitude);
   if (printed()) return printed_place(magnitude);
   if (magnitude < power_of_ten(kLowestPower)) return 0;  // denormals are off this line
   if (!(magnitude < power_of_ten(kMostExponent))) return decade(kMostExponent);
+  turn_to(magnitude);
   const int exponent = decimal_exponent(magnitude);
   return decade(exponent) + digits_of(magnitude, digits_ - 1 - exponent) - per_decade_ / 9;
 }
@@ -157,6 +176,9 @@ double NumberLine::magnitude_number(std::int64_t place) const {
   if (line_ == Line::decimals) return static_cast<double>(place) / scale_;
   if (printed()) return printed_number(place);
   if (place == 0) return 0;
+  if (place >= last_.first && place < last_.first + per_decade_ && last_.scale > 0) {
+    return static_cast<double>(place - last_.base) / last_.scale;
+  }
   const std::int64_t exponent = (place - 1) / per_decade_ + kLowestPower;
   if (exponent > kHighestPower) return std::numeric_limits<double>::infinity();
   const std::int64_t digits = (place - 1) % per_decade_ + per_decade_ / 9;
@@ -234,11 +256,12 @@ double NumberLine::step(double value) const {
     case Line::shortest32:
       return magnitude * 0x1p-23;
     case Line::decimals:
-      return 1 / scale_;
+      return step_;
     case Line::printed32:
     case Line::degrees32:
-      return std::max(1 / scale_, magnitude * 0x1p-23);
+      return std::max(step_, magnitude * 0x1p-23);
     default: {
+      if (last_.holds(magnitude)) return last_.step;
       if (!(magnitude >= 1e-290)) return 1e-300;
       const int exponent = decimal_exponent(magnitude) - digits_ + 1;
       return power_of_ten(exponent);

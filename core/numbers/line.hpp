@@ -57,6 +57,21 @@ class NumberLine {
   }
 
  private:
+  // A decade of a line of significant digits, 10^e <= magnitude < 10^(e+1), that can be counted by
+  // one multiplication: the next number most often lies in that of the last one.
+  struct Decade {
+    double low = 1;
+    double high = 0;         // at first it holds nothing
+    double scale = 0;        // from magnitudes to digits
+    double step = 0;         // between its numbers
+    std::int64_t base = 0;   // place of a number less its digits
+    std::int64_t first = 0;  // place of the first number
+    bool holds(double magnitude) const { return magnitude >= low && magnitude < high; }
+  };
+
+  // Makes `last_` the decade of a magnitude, where it can be counted so.
+  void turn_to(double magnitude) const;
+
   std::int64_t magnitude_place(double magnitude) const;
   double magnitude_number(std::int64_t place) const;
   std::int64_t decimal_place(double magnitude) const;
@@ -68,11 +83,13 @@ class NumberLine {
   int digits_;
   std::int64_t per_decade_ = 0;
   double scale_ = 1;
+  double step_ = 1;
   // Of printed lines: degrees in a radian or 1, the bits of the first float that is further from
   // the next than decimals are, and its place.
   double unit_ = 1;
   std::int64_t coarse_bits_ = 0;
   std::int64_t coarse_place_ = 0;
+  mutable Decade last_;
 };
 
 // Whether a line of this kind can have as many digits.

@@ -130,7 +130,7 @@ def _compress_motion(
 
     def work(way: Codec) -> tuple[bytes, Loss | None]:
         own = model if way is codec else None
-        encoded = way.encode(clip, model=own)
+        encoded = way.encode(clip.main, skeleton=clip.skeleton, model=own)
         blob = pack_file(
             kind=Kind[layout.format.upper()],
             size=len(data),

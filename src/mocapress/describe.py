@@ -115,10 +115,10 @@ def describe_mcz(
     facts |= describe_clip(columns, mcz.frames)
     if mcz.frames and mcz.columns:
         facts["bits_per_sample"] = 8 * len(blob) / (mcz.frames * mcz.columns)
-    measure = getattr(codecs.codec(mcz.codec), "measure", None)
-    if measure is not None and facts["model_found"] is not False:
+    codec = codecs.codec(mcz.codec)
+    if codec.can.measured and facts["model_found"] is not False:
         clip = columns.with_frames(load(blob, models=models).values, columns.frame_time)
-        facts |= measure(clip, Encoded(mcz.codec_header, chunks_of(mcz)), mcz.size)
+        facts |= codec.measure(clip, Encoded(mcz.codec_header, chunks_of(mcz)), mcz.size)
     return facts
 
 

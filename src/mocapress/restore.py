@@ -197,12 +197,12 @@ def _decode(
     """Decode frames [first, last) and the fewest chunks that they need."""
     start, stop, frame = mcz.chunk_range(first, last)
     chunks = chunks_of(mcz, start, stop, frame)
-    frames = sum(chunk.frames for chunk in chunks)
-    values = codec.decode(mcz.codec_header, chunks, clip.columns, model=model)
+    frames = last - frame
+    values = codec.decode(mcz.codec_header, chunks, clip.columns, model=model, stop=frames)
     if values.shape != (frames, mcz.columns):
         raise CorruptError(
             "decoded values",
             expected=f"{frames} x {mcz.columns}",
             found=" x ".join(map(str, values.shape)),
         )
-    return values[first - frame : last - frame]
+    return values[first - frame :]

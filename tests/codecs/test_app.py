@@ -26,6 +26,10 @@ JOINTS = (
 )
 
 
+def parents_of(clip: Clip) -> list[int]:
+    return parent_columns(clip.columns, clip.skeleton)
+
+
 def make_clip(values: Matrix, decimal: NumberFormat | None = None, order: int = 1) -> Clip:
     """Give a clip of a short leg; ``order`` -1 lists children before parents."""
     columns = [
@@ -51,7 +55,7 @@ def assert_same_bits(actual: Matrix, expected: Matrix) -> None:
 
 
 def round_trip(codec: App, clip: Clip) -> None:
-    coded = codec.encode(clip)
+    coded = codec.encode(clip.main, skeleton=clip.skeleton)
     assert_same_bits(codec.decode(coded.header, coded.chunks, clip.columns), clip.values)
 
 
@@ -91,7 +95,7 @@ class TestGivesBackEveryBit:
         clip = make_clip(np.full((4000, 7), value))
         codec = App(mantissa_limit=53, chunk=4000)
         round_trip(codec, clip)
-        coded = codec.encode(clip)
+        coded = codec.encode(clip.main, skeleton=clip.skeleton)
         motion = sum(len(chunk.payload) for chunk in coded.chunks) - coded.index_bytes
         assert motion < 7 * 8 + 120  # the first row, and what 28,000 sure answers cost
 
@@ -99,12 +103,12 @@ class TestGivesBackEveryBit:
         clip = make_clip(walk(50), SIX_DIGITS)
         bare = Clip.of(clip.values, clip.columns)
         round_trip(App(), bare)
-        assert parent_columns(bare) == [-1] * 7
+        assert parents_of(bare) == [-1] * 7
 
     def test_from_any_chunk_alone(self) -> None:
         clip = make_clip(walk(100), SIX_DIGITS)
         codec = App(t=10, chunk=25)
-        coded = codec.encode(clip)
+        coded = codec.encode(clip.main, skeleton=clip.skeleton)
         assert [chunk.frames for chunk in coded.chunks] == [30, 30, 30, 10]
         for chunk in coded.chunks:
             rows = clip.values[chunk.first : chunk.first + chunk.frames]
@@ -115,7 +119,7 @@ class TestPrecision:
     def precisions(self, values: list[float], decimal: NumberFormat | None) -> list[int]:
         clip = make_clip(np.array([[value] for value in values]), decimal)
         round_trip(App(), clip)
-        return unpack_header(App().encode(clip).header, 1)[1]
+        return unpack_header(App().encode(clip.main, skeleton=clip.skeleton).header, 1)[1]
 
     def test_is_single_for_six_digits_of_any_size(self) -> None:
         values = [17.6356, -1.6201e-14, 9.04e-17, 3.40282e38, 1.17550e-38, 0.00999999, 123456, 1e9]
@@ -156,9 +160,9 @@ class TestFollowsThePaper:
         self, codec: App, values: Matrix, order: int
     ) -> None:
         clip = make_clip(values, None, order)
-        coded = codec.encode(clip)
+        coded = codec.encode(clip.main, skeleton=clip.skeleton)
         parents, precisions = unpack_header(coded.header, clip.channels)
-        assert parents == parent_columns(clip)
+        assert parents == parents_of(clip)
         for chunk in coded.chunks:
             rows = values[chunk.first : chunk.first + chunk.frames].tolist()
             singles = [precision > 0 for precision in precisions]
@@ -171,9 +175,11 @@ class TestFollowsThePaper:
     @pytest.mark.parametrize("table", ALPHA_TABLES)
     def test_on_motion_too(self, table: str, limit: int) -> None:
         clip = make_clip(walk(200), SIX_DIGITS)
-        (chunk,) = App(table=table, mantissa_limit=limit).encode(clip).chunks
+        (chunk,) = (
+            App(table=table, mantissa_limit=limit).encode(clip.main, skeleton=clip.skeleton).chunks
+        )
         assert chunk.payload == reference.payload(
-            clip.values.tolist(), parent_columns(clip), [True] * 7, ALPHA_TABLES[table], 15, limit
+            clip.values.tolist(), parents_of(clip), [True] * 7, ALPHA_TABLES[table], 15, limit
         )
 
     @pytest.mark.parametrize(
@@ -196,19 +202,19 @@ class TestFollowsThePaper:
 
     def test_index_size_of_equation_10(self) -> None:
         clip = Clip.of(np.zeros((640, 62)), tuple(Column(f"c{i}", -1, "rx") for i in range(62)))
-        assert App(t=10, chunk=640).encode(clip).index_bytes == 1488
+        assert App(t=10, chunk=640).encode(clip.main, skeleton=clip.skeleton).index_bytes == 1488
 
     def test_parents_are_the_nearest_ancestors_of_the_same_axis(self) -> None:
         clip = make_clip(np.zeros((1, 7)))
         names = [column.name for column in clip.columns]
-        parents = {names[c]: names[p] for c, p in enumerate(parent_columns(clip)) if p >= 0}
+        parents = {names[c]: names[p] for c, p in enumerate(parents_of(clip)) if p >= 0}
         assert parents == {"knee.rx": "root.rx", "knee.ry": "root.ry", "foot.ry": "knee.ry"}
 
 
 class TestMeasures:
     def test_ideal_alpha_minimises_the_error_of_equation_7(self) -> None:
         clip = make_clip(walk(60))
-        parents = parent_columns(clip)
+        parents = parents_of(clip)
         alphas = ideal_alphas(clip, 15)
         steps = np.diff(clip.values, axis=0)
         for c, p in enumerate(parents):
@@ -252,7 +258,7 @@ class TestRefuses:
     def test_every_truncation(self) -> None:
         clip = make_clip(walk(20), SIX_DIGITS)
         codec = App(chunk=20)
-        coded = codec.encode(clip)
+        coded = codec.encode(clip.main, skeleton=clip.skeleton)
         (chunk,) = coded.chunks
         for size in range(len(chunk.payload)):
             cut = type(chunk)(0, chunk.frames, chunk.payload[:size])
@@ -272,7 +278,7 @@ class TestRefuses:
     ) -> None:
         clip = make_clip(walk(20), decimal)
         codec = App(mantissa_limit=limit)
-        coded = codec.encode(clip)
+        coded = codec.encode(clip.main, skeleton=clip.skeleton)
         (chunk,) = coded.chunks
         outcomes = set()
         for bit in range(8 * (len(coded.header) + len(chunk.payload))):
@@ -291,8 +297,8 @@ class TestRefuses:
     @given(st.binary(max_size=200), st.binary(max_size=20), st.integers(-5, 10**12))
     def test_junk_or_gives_the_right_shape(self, junk: bytes, header: bytes, frames: int) -> None:
         clip = make_clip(walk(20), SIX_DIGITS)
-        chunk = App().encode(clip).chunks[0]
-        for head in (header, App().encode(clip).header):
+        chunk = App().encode(clip.main, skeleton=clip.skeleton).chunks[0]
+        for head in (header, App().encode(clip.main, skeleton=clip.skeleton).header):
             try:
                 values = App().decode(head, [type(chunk)(0, frames, junk)], clip.columns)
             except CorruptError:
@@ -315,4 +321,6 @@ class TestRefuses:
     def test_headers_that_describe_no_columns(self, header: bytes) -> None:
         clip = make_clip(walk(20), SIX_DIGITS)
         with pytest.raises(CorruptError):
-            App().decode(header, App().encode(clip).chunks, clip.columns)
+            App().decode(
+                header, App().encode(clip.main, skeleton=clip.skeleton).chunks, clip.columns
+            )

@@ -17,7 +17,7 @@ from learner import Learner
 from numpy.typing import NDArray
 
 from mocapress import codecs
-from mocapress.codecs import Chunk, Codec
+from mocapress.codecs import Bound, Chunk, Codec, Encoded, Scope
 from mocapress.errors import CorruptError, ParameterError
 from mocapress.formats.number_formats import printed
 from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton
@@ -67,8 +67,12 @@ def smooth(frames: int, channels: int, seed: int = 0) -> NDArray[np.float64]:
     return np.asarray(waves + random.normal(0, 1e-3, (frames, channels)))
 
 
+def encoded_by(codec: Codec, clip: Clip) -> Encoded:
+    return codec.encode(clip.main, skeleton=clip.skeleton)
+
+
 def round_trip(codec: Codec, clip: Clip) -> None:
-    encoded = codec.encode(clip)
+    encoded = encoded_by(codec, clip)
     assert sum(chunk.frames for chunk in encoded.chunks) == clip.frames
     assert [chunk.first for chunk in encoded.chunks] == list(
         np.cumsum([0, *(chunk.frames for chunk in encoded.chunks)])[:-1]
@@ -80,7 +84,7 @@ def round_trip(codec: Codec, clip: Clip) -> None:
 
 
 def whole(codec: Codec, clip: Clip) -> NDArray[np.float64]:
-    encoded = codec.encode(clip)
+    encoded = encoded_by(codec, clip)
     return codec.decode(encoded.header, encoded.chunks, clip.columns)
 
 
@@ -155,7 +159,7 @@ def test_errors_stay_within_what_was_asked(
 def test_decoding_can_begin_at_every_restart(name: str) -> None:
     clip = clip_of(smooth(2500, 6))
     codec = codecs.codec(name)
-    encoded, all_rows = codec.encode(clip), whole(codec, clip)
+    encoded, all_rows = encoded_by(codec, clip), whole(codec, clip)
     assert restarts(encoded.chunks)[0] == 0
     assert len(restarts(encoded.chunks)) > 1
     for start in restarts(encoded.chunks):
@@ -167,9 +171,61 @@ def test_decoding_can_begin_at_every_restart(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ALL)
+def test_decoding_stops_where_it_is_asked_to(name: str) -> None:
+    clip = clip_of(smooth(1200, 6))
+    codec = codecs.codec(name)
+    encoded, all_rows = encoded_by(codec, clip), whole(codec, clip)
+    borders = [chunk.first for chunk in encoded.chunks]
+    for stop in {0, 1, 2, 17, 700, 1199, 1200, 1300, *borders, *(b + 1 for b in borders)}:
+        decoded = codec.decode(encoded.header, encoded.chunks, clip.columns, stop=stop)
+        assert decoded.shape == all_rows[:stop].shape
+        assert decoded.tobytes() == all_rows[:stop].tobytes()
+
+
+def test_of_many_columns_it_stops_too() -> None:
+    """More columns than are coded together."""
+    clip = clip_of(smooth(40, 1030))
+    encoded = encoded_by(codecs.codec("exact:level=3"), clip)
+    decoded = codecs.codec("exact:level=3").decode(
+        encoded.header, encoded.chunks, clip.columns, stop=7
+    )
+    assert decoded.tobytes() == clip.values[:7].tobytes()
+
+
+@pytest.mark.parametrize("name", ["exact", "exact:level=1"])
+def test_what_is_behind_the_stop_is_not_read(name: str) -> None:
+    clip = clip_of(smooth(500, 6))
+    encoded = encoded_by(codecs.codec(name), clip)
+    (chunk,) = encoded.chunks
+    changed = chunk.payload[:-1] + bytes([chunk.payload[-1] ^ 0xFF])
+    damaged = dataclasses.replace(chunk, payload=changed)
+    decoded = codecs.codec(name).decode(encoded.header, [damaged], clip.columns, stop=100)
+    assert decoded.tobytes() == clip.values[:100].tobytes()
+    rest = decode_broken(codecs.codec(name), encoded.header, damaged, clip.columns)
+    assert rest is None or rest.tobytes() != clip.values.tobytes()
+
+
+@pytest.mark.parametrize("name", codecs.codec_ids())
+def test_what_it_can_is_declared(name: str) -> None:
+    made = codecs.codec(name)
+    parameters = {field.name for field in dataclasses.fields(made)}  # type: ignore[arg-type]
+    assert made.can.levels == ("level" in parameters)
+    assert (Bound.MEAN in made.can.bounds) == ("target_psnr" in parameters)
+    assert (Bound.LARGEST in made.can.bounds) == ("max_error" in parameters)
+    for capability, method in (
+        (made.can.trains, "train"),
+        (made.can.document, "document"),
+        (made.can.measured, "measure"),
+    ):
+        assert capability == (getattr(type(made), method) is not getattr(Codec, method))
+    assert made.can.lossless == (not made.can.bounds)
+    assert made.can.scope is Scope.CLIP
+
+
+@pytest.mark.parametrize("name", ALL)
 def test_the_same_bytes_on_every_run(name: str) -> None:
     clip = clip_of(on_grid(smooth(600, 9), FORMATS[1]), FORMATS[1])
-    assert codecs.codec(name).encode(clip) == codecs.codec(name).encode(clip)
+    assert encoded_by(codecs.codec(name), clip) == encoded_by(codecs.codec(name), clip)
 
 
 @pytest.mark.parametrize("spec", payloads.specs())
@@ -191,7 +247,7 @@ def decode_broken(
 def test_truncated_payloads_are_found_out(name: str) -> None:
     clip = clip_of(smooth(25, 4))
     codec = codecs.codec(name)
-    encoded = codec.encode(clip)
+    encoded = encoded_by(codec, clip)
     chunk = encoded.chunks[0]
     for length in range(len(chunk.payload)):
         cut = dataclasses.replace(chunk, payload=chunk.payload[:length])
@@ -206,7 +262,7 @@ def test_flipped_bits_give_an_error_or_values_of_the_right_shape(name: str) -> N
     """That they are wrong is for the container's checksums to find."""
     clip = clip_of(smooth(25, 4))
     codec = codecs.codec(name)
-    encoded = codec.encode(clip)
+    encoded = encoded_by(codec, clip)
     chunk = encoded.chunks[0]
     for bit in range(8 * len(chunk.payload)):
         flipped = bytearray(chunk.payload)
@@ -225,7 +281,7 @@ def test_flipped_bits_give_an_error_or_values_of_the_right_shape(name: str) -> N
 def test_memory_does_not_follow_announcements(name: str) -> None:
     clip = clip_of(smooth(25, 4))
     codec = codecs.codec(name)
-    encoded = codec.encode(clip)
+    encoded = encoded_by(codec, clip)
     for frames in (26, 10**6, 10**12):
         lie = dataclasses.replace(encoded.chunks[0], frames=frames)
         tracemalloc.start()
@@ -255,7 +311,7 @@ def test_changed_parameters_travel_as_text() -> None:
 def test_levels_are_parameters(name: str) -> None:
     made = codecs.codec(name)
     for level in (1, 9):
-        if codecs.has_level(made):
+        if made.can.levels:
             assert codecs.with_level(made, level) == codecs.codec(f"{name}:level={level}")
         else:
             with pytest.raises(ParameterError, match=f"codec {name} has no levels"):

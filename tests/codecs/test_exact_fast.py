@@ -100,7 +100,7 @@ def test_fast_levels_need_no_more_than_a_chunk(samples: Path, level: int) -> Non
     clip = mp.read(samples / "cmu_01_01.amc")
     few = Clip.of(clip.values[:20], clip.columns)
     codec = codecs.codec(f"exact:level={level},chunk=1")
-    encoded = codec.encode(few)
+    encoded = codec.encode(few.main)
     assert len(encoded.chunks) == 20
     for chunk in encoded.chunks:
         row = codec.decode(encoded.header, [chunk], few.columns)
@@ -192,7 +192,7 @@ def test_payloads_of_a_wrong_length_are_found_out(level: int, noise: int) -> Non
 
 def test_levels_are_not_mixed_up(samples: Path) -> None:
     clip = mp.read(samples / "freebvh.bvh")
-    encoded = codecs.codec("exact:level=1").encode(clip)
+    encoded = codecs.codec("exact:level=1").encode(clip.main)
     for level in (2, 3):
         with pytest.raises(CorruptError):
             codecs.codec(f"exact:level={level}").decode(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 import mocapress as mp
 from mocapress import _core
 from mocapress.codecs.exact import Exact
-from mocapress.codecs.exact.skeletons import is_known
+from mocapress.codecs.exact.skeletons import CMU, NONE, skeleton_of
 from mocapress.errors import CorruptError
 from mocapress.motion import Clip, Column, Joint, Skeleton
 from mocapress.motion.kinematics import positions, rotations
@@ -21,20 +21,19 @@ ROOT = Path(__file__).parents[2]
 KINDS = ("tx", "ty", "tz", "rx", "ry", "rz")
 
 
-def numbers(text: str, name: str) -> Array:
-    """Give the numbers of a table, as they stand in the source."""
-    (body,) = re.findall(rf"{name} = \{{\{{(.*?)\}}\}};", text, re.DOTALL)
-    body = re.sub(r"//.*", "", body)
-    return np.array([float(found) for found in re.findall(r"-?[\d.]+(?:e[+-]?\d+)?", body)])
+def numbers(text: str) -> Array:
+    """Give the numbers of a data file of the format, or of a part of it."""
+    return np.array(re.findall(r"-?[\d.]+(?:e[+-]?\d+)?(?=,)", text), dtype=np.float64)
 
 
 class Table:
-    """The bones of core/exact/kinematics_tables.hpp."""
+    """The bones of core/exact/data/skeleton_cmu_1.txt."""
 
     def __init__(self) -> None:
-        text = (ROOT / "core/exact/kinematics_tables.hpp").read_text()
-        self.bones = numbers(text, "kSkeletonBone").reshape(-1, 18)
-        self.resistances = numbers(text, "kSkeletonChannel").reshape(-1, 3)[:, 2]
+        text = (ROOT / "core/exact/data/skeleton_cmu_1.txt").read_text()
+        bones, channels = text.split("// channel")
+        self.bones = numbers(bones).reshape(-1, 18)
+        self.resistances = numbers(channels).reshape(-1, 3)[:, 2]
         self.columns = sorted(
             (int(place), bone, kind)
             for bone, record in enumerate(self.bones)
@@ -173,7 +172,7 @@ def test_clips_of_the_skeleton_come_back(walk: Clip, level: int) -> None:
     values[100:110, 50] = [np.nan, np.inf, -np.inf, 1e300, -0.0, 5e-324, 1e6, -1e6, 720, 1]
     codec = Exact(level=level)
     clip = walk[:300].with_values(values)
-    coded = codec.encode(clip)
+    coded = codec.encode(clip.main)
     decoded = codec.decode(coded.header, coded.chunks, clip.columns)
     assert decoded.tobytes() == values.tobytes()
 
@@ -181,10 +180,10 @@ def test_clips_of_the_skeleton_come_back(walk: Clip, level: int) -> None:
 def test_geometry_makes_clips_of_the_skeleton_smaller(walk: Clip) -> None:
     known = walk[:1000]
     unknown = known.with_columns(tuple(replace(c, unit="") for c in known.columns))
-    assert is_known(known.columns)
-    assert not is_known(unknown.columns)
+    assert skeleton_of(known.columns) == CMU
+    assert skeleton_of(unknown.columns) == NONE
     small, large = (
-        sum(len(chunk.payload) for chunk in Exact(level=9).encode(clip).chunks)
+        sum(len(chunk.payload) for chunk in Exact(level=9).encode(clip.main).chunks)
         for clip in (known, unknown)
     )
     assert small < 0.995 * large
@@ -192,6 +191,6 @@ def test_geometry_makes_clips_of_the_skeleton_smaller(walk: Clip) -> None:
 
 def test_a_header_cannot_claim_the_skeleton_for_other_columns(walk: Clip) -> None:
     clip = walk[:10]
-    coded = Exact(level=9).encode(clip)
+    coded = Exact(level=9).encode(clip.main)
     with pytest.raises(CorruptError):
         Exact(level=9).decode(coded.header, coded.chunks, clip.columns[:-1])

@@ -18,7 +18,7 @@ from mocapress.codecs.exact.coupling import CouplingKind
 Array = NDArray[np.float64]
 
 ROOT = Path(__file__).parents[2]
-TABLES = (ROOT / "core/exact/law_tables.hpp").read_text()
+TABLES = {name: (ROOT / f"core/exact/data/{name}_1.txt").read_text() for name in ("spine", "neck")}
 CLIP = mocapress.read(ROOT / "samples/cmu_01_01.amc")
 JOINTS = {
     CouplingKind.SPINE: ("lowerback", "upperback", "thorax"),
@@ -31,9 +31,10 @@ MIDDLES = {
 UP = np.array([0.0, 1, 0])
 
 
-def table(name: str) -> Array:
-    (body,) = re.findall(rf"{name} = \{{(.*?)\}};", TABLES, re.DOTALL)
-    return np.array([float(number) for number in re.findall(r"-?[\d.]+(?:e[-+]?\d+)?", body)])
+def table(kind: CouplingKind, part: str) -> Array:
+    """Give the numbers of a part: branch, twist of the last joint, twist of the middle joint."""
+    found = re.findall(rf"// {part}.*\n([^/]*)", TABLES[kind.name.lower()])
+    return np.array(re.findall(r"-?[\d.]+(?:e[-+]?\d+)?", "".join(found)), dtype=np.float64)
 
 
 def angles(*names: str) -> Array:
@@ -106,19 +107,18 @@ def third_twist(first: Array, second: Array, numbers: Array) -> float:
 
 def literal(kind: CouplingKind, row: Array) -> tuple[Array, float]:
     """Give x, z of the third joint by the branch that comes nearest, and y by the first branch."""
-    title = kind.name.capitalize()
     first = rotation(*row[:3])
     second = first @ rotation(*row[3:6])
     y, x, z = row[6:]
     told: list[Array] = []
-    for near, root in table(f"k{title}Branches").reshape(-1, 2, 35):
+    for near, root in table(kind, "branch").reshape(-1, 2, 35):
         own = second.T @ third_axis(first, second, near, root)
         told_x = np.degrees(np.arcsin(own[2] / np.cos(np.radians(y))))
         sx, sy, cx = np.sin(np.radians(x)), np.sin(np.radians(y)), np.cos(np.radians(x))
         told_z = np.degrees(np.arctan2(own[1], own[0]) - np.arctan2(cx, sy * sx))
         told.append(np.array([told_x, (told_z - z + 180) % 360 - 180 + z]))
-    y3 = third_axis(first, second, *table(f"k{title}Branches").reshape(-1, 2, 35)[0])
-    turn = third_twist(first, second, table(f"k{title}Twist"))
+    y3 = third_axis(first, second, *table(kind, "branch").reshape(-1, 2, 35)[0])
+    turn = third_twist(first, second, table(kind, "twist of the last"))
     swung = swing(second[:, 1], y3) @ second @ rotation(0, np.degrees(turn), 0)
     told_y = np.degrees(-np.arcsin((second.T @ swung)[2, 0]))
     return min(told, key=lambda pair: abs(pair[0] - x)), float(told_y)
@@ -160,10 +160,9 @@ def test_a_chain_holds_to_a_thousandth_of_a_degree(kind: CouplingKind, share: fl
 
 @pytest.mark.parametrize("kind", MIDDLES)
 def test_the_middle_joint_turns_as_its_law_says(kind: CouplingKind) -> None:
-    title = MIDDLES[kind].name.capitalize()
     rows = chain(MIDDLES[kind])[:, [0, 1, 2, 3, 5, 4]]
     told = _core.exact_law(kind, rows)
-    numbers = table(f"k{title}Middle")
+    numbers = table(MIDDLES[kind], "twist of the middle")
     for row, y in zip(rows[::211], told[::211, 0], strict=True):
         first, local = rotation(*row[:3]), rotation(row[3], y, row[4])
         y1, y2 = first[:, 1], (first @ local)[:, 1]

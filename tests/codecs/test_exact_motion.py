@@ -54,7 +54,7 @@ def size(encoded: Encoded) -> int:
 def coded(clip: Clip, level: int = 9) -> int:
     """Give the size of a clip, having seen that it comes back."""
     codec = Exact(level)
-    encoded = codec.encode(clip)
+    encoded = codec.encode(clip.main)
     decoded = codec.decode(encoded.header, encoded.chunks, clip.columns)
     assert decoded.tobytes() == clip.values.tobytes()
     return size(encoded)
@@ -201,7 +201,7 @@ def test_a_first_frame_of_another_pose_teaches_nothing() -> None:
 def test_damaged_headers_are_refused_or_give_other_numbers(made: Callable[[], Floats]) -> None:
     clip = clip_of(made()[:100])
     codec = Exact(1)
-    encoded = codec.encode(clip)
+    encoded = codec.encode(clip.main)
     assert joints_of(clip)
     refused = 0
     for place in range(len(encoded.header)):
@@ -219,7 +219,7 @@ def test_damaged_headers_are_refused_or_give_other_numbers(made: Callable[[], Fl
 
 def test_roles_of_turning_columns_come_back_from_the_header() -> None:
     clip = clip_of(np.round((wave(7, 400)[:, None] + [0, 50, 100] + 180) % 360 - 180, 2))
-    encoded = Exact().encode(clip)
+    encoded = Exact().encode(clip.main)
     roles = roles_of(clip)
     assert roles.turns == (1, 1, 1)
     assert roles.roles == (Role.PREDICTED,) * 3

@@ -16,7 +16,8 @@ from typer.testing import CliRunner
 import mocapress as mp
 from mocapress import api, codecs
 from mocapress.cli.app import app
-from mocapress.codecs import Chunk, Codec, Encoded, Model
+from mocapress.codecs import Capabilities, Chunk, Codec, Encoded, Model, Others
+from mocapress.codecs.contract import NO_OTHERS
 from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.diffma.coding import Coding
 from mocapress.codecs.exact import Exact
@@ -24,7 +25,7 @@ from mocapress.codecs.fallback import RAISE_VARIABLE
 from mocapress.codecs.loss import Loss
 from mocapress.container.diffma_json import file_to_json
 from mocapress.errors import ParameterError, VerificationError
-from mocapress.motion import Clip, Column
+from mocapress.motion import Column, Skeleton, Stream
 from mocapress.source import Source
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -37,16 +38,23 @@ class Faulty(Codec):
     """A codec that fails in the ways that codecs fail."""
 
     id: ClassVar[str] = "faulty"
-    lossless: ClassVar[bool] = True
+    can: ClassVar[Capabilities] = Capabilities(lossless=True)
 
     how: str = "encode"
 
-    def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:
+    def encode(
+        self,
+        stream: Stream,
+        *,
+        skeleton: Skeleton | None = None,
+        model: Model | None = None,
+        others: Others = NO_OTHERS,
+    ) -> Encoded:
         if self.how == "memory":
             raise MemoryError
         if self.how == "encode":
             raise IndexError("list index out of range")
-        return Encoded(b"", (Chunk(0, clip.frames, b""),))
+        return Encoded(b"", (Chunk(0, stream.frames, b""),))
 
     def decode(
         self,
@@ -55,6 +63,8 @@ class Faulty(Codec):
         columns: Sequence[Column],
         *,
         model: Model | None = None,
+        others: Others = NO_OTHERS,
+        stop: int | None = None,
     ) -> NDArray[np.float64]:
         if self.how == "decode":
             raise ZeroDivisionError("division by zero")

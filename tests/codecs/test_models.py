@@ -16,11 +16,10 @@ from test_contract import FORMATS, clip_of, on_grid, smooth
 
 from mocapress import codecs
 from mocapress.codecs import Codec, Model
-from mocapress.codecs.contract import Trainable
 from mocapress.errors import CorruptError, ParameterError
 from mocapress.motion import Clip, NumberFormat
 
-LEARNERS = [spec for spec in payloads.specs() if isinstance(codecs.codec(spec), Trainable)]
+LEARNERS = [spec for spec in payloads.specs() if codecs.codec(spec).can.trains]
 OTHERS = [spec for spec in payloads.specs() if spec not in LEARNERS]
 DECIMAL = FORMATS[1]
 
@@ -31,7 +30,7 @@ def made(request: pytest.FixtureRequest) -> Codec:
 
 
 def trained(made: Codec, *clips: Clip) -> Model:
-    return codecs.learner(made).train(iter(clips))
+    return codecs.learner(made).train(clip.main for clip in clips)
 
 
 def motion(frames: int, channels: int, seed: int, decimal: NumberFormat | None = DECIMAL) -> Clip:
@@ -41,7 +40,7 @@ def motion(frames: int, channels: int, seed: int, decimal: NumberFormat | None =
 def decoded(
     made: Codec, clip: Clip, model: Model | None, other: Model | None
 ) -> NDArray[np.float64]:
-    encoded = made.encode(clip, model=model)
+    encoded = made.encode(clip.main, model=model)
     return made.decode(encoded.header, encoded.chunks, clip.columns, model=other)
 
 
@@ -98,7 +97,7 @@ def test_whatever_was_learned_clips_come_back(
 def test_decoding_can_begin_at_every_restart_with_a_model(made: Codec) -> None:
     model = trained(made, motion(300, 6, 1))
     clip = motion(1500, 6, 2)
-    encoded = made.encode(clip, model=model)
+    encoded = made.encode(clip.main, model=model)
     starts = [i for i, chunk in enumerate(encoded.chunks) if chunk.restart]
     assert starts[0] == 0
     for start in starts:
@@ -112,7 +111,7 @@ def test_the_same_model_and_bytes_on_every_run(made: Codec) -> None:
     model = trained(made, *clips)
     assert trained(made, *clips) == model
     assert trained(made, *clips).digest == model.digest
-    assert made.encode(clips[0], model=model) == made.encode(clips[0], model=model)
+    assert made.encode(clips[0].main, model=model) == made.encode(clips[0].main, model=model)
 
 
 def test_a_missing_model_is_found_out(made: Codec) -> None:

@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import subprocess
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 
 import mocapress as mp
+from mocapress.motion.columns import skeleton_columns
 
 SCRIPT = Path(__file__).with_name("positions.mjs")
 SAMPLES = Path(__file__).parents[2] / "samples"
@@ -99,6 +101,20 @@ def test_an_amc_that_states_its_rate(tmp_path: Path, stated: str) -> None:
         f":DEGREES\n:SAMPLES-PER-SECOND {stated}\n-1\nroot 1 2 3 4 5 6\n0\nroot 1 2 3 4 5 6\n"
     )
     check(file)
+
+
+@pytest.mark.parametrize("kind", ["bvh", "amc"])
+def test_odd_names(tmp_path: Path, kind: str) -> None:
+    called = ["Hips", "a b", "Hüfteà", "Å", "End", "begin", "root", "#{}", "", "%41", "a b", "\xa0"]
+    joints = tuple(
+        mp.Joint(name, i - 1, channels=("rz", "ry", "rx"), ends=((0.0, 1.0, 0.0),) * (i == 11))
+        for i, name in enumerate(called)
+    )
+    skeleton = mp.Skeleton(joints)
+    columns = skeleton_columns(skeleton)
+    clip = mp.Clip.of(np.ones((2, len(columns))), columns, Fraction(1, 30), skeleton)
+    mp.write(clip, tmp_path / f"a.{kind}")
+    check(tmp_path / f"a.{kind}")
 
 
 ODD = {

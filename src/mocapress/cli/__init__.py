@@ -33,7 +33,7 @@ def main() -> None:
 
 
 def _end_stdout(error: OSError) -> None:
-    """End where stdout takes no more; a reader that has gone away has had enough."""
+    """End quietly when stdout is closed: its reader has seen enough."""
     # What is still in the buffer must not be tried again when Python ends.
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     if error.errno != errno.EPIPE:

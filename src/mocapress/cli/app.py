@@ -1,4 +1,4 @@
-"""The commands, each of which is a file beside this one."""
+"""The command line: each command is a file beside this one."""
 
 from typing import Annotated
 

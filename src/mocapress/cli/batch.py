@@ -27,7 +27,7 @@ STREAM = Path("-")
 
 @dataclass(slots=True, eq=False)
 class Job:
-    """One file: what is to be done with it, and what came of that."""
+    """One file, what to do with it, and the result."""
 
     source: Path
     """``-`` is stdin."""
@@ -55,7 +55,7 @@ class Job:
 
 
 def find(inputs: Sequence[Path], suffixes: tuple[str, ...]) -> list[Job]:
-    """Turn files and folders into jobs; of a folder, all files below it with these endings."""
+    """Turn files and folders into jobs; of a folder, all files below it with these suffixes."""
     jobs = []
     for path in inputs:
         if path != STREAM and path.is_dir():

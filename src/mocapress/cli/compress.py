@@ -35,41 +35,48 @@ def compress(
     codec: Annotated[
         str | None,
         typer.Option(
-            "--codec", help="Codec, e.g. diffma:bound=4. Usually lossless; diffma for JSON."
+            "--codec",
+            help="Codec, e.g. diffma:bound=4. By default a lossless one; diffma for JSON.",
         ),
     ] = None,
     level: Annotated[
         int | None,
-        typer.Option("--level", min=1, max=9, help="1 (fast) to 9 (strong); as codec ID:level=N."),
+        typer.Option(
+            "--level",
+            min=1,
+            max=9,
+            help="1 (fast) to 9 (small files); the same as --codec ID:level=N.",
+        ),
     ] = None,
     model: Annotated[
         Path | None,
-        typer.Option("--model", help="Model from mocapress train, needed again to decompress."),
+        typer.Option("--model", help="Model made by mocapress train; also needed to decompress."),
     ] = None,
     to: Annotated[
         Packed | None,
-        typer.Option("--to", help="Kind of file; else what the output's name says, or mcz."),
+        typer.Option("--to", help="Kind of file; by default the output's suffix says it, or mcz."),
     ] = None,
     target_psnr: Annotated[
         float | None,
-        typer.Option("--target-psnr", help="Choose diffma's bound for this PSNR.", metavar="DB"),
+        typer.Option(
+            "--target-psnr", help="Let diffma choose its bound for this PSNR.", metavar="DB"
+        ),
     ] = None,
     asf: Asf = None,
     embed_asf: Annotated[
-        bool, typer.Option("--embed-asf", help="Store the skeleton of AMC files, too.")
+        bool, typer.Option("--embed-asf", help="Also store the skeleton (ASF) of AMC files.")
     ] = False,
     jobs: Jobs = 1,
     force: Force = False,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Compress motion files to .mcz or JSON, decoded again and compared before they are written."""
+    """Compress motion files to .mcz or JSON; each result is decoded and compared before writing."""
     from mocapress import api
     from mocapress.cli.batch import find, run
     from mocapress.cli.models import open_model
     from mocapress.cli.sizes import show_sizes, show_total
     from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
-    from mocapress.codecs.diffma import DiffMA
     from mocapress.container import diffma_json
     from mocapress.formats import formats, suffixes
 
@@ -101,7 +108,6 @@ def compress(
             facts["psnr"] = loss.psnr if loss else None
             facts["warning"] = compressed.warning
         else:
-            assert isinstance(made, DiffMA)
             blob = diffma_json.named(to, diffma_json.file_to_json(source, made, asf_path=asf))
         job.outputs[job.target] = blob
         return {
@@ -131,7 +137,7 @@ def _codec(
 
     from mocapress import codecs
     from mocapress.cli.batch import usage
-    from mocapress.codecs.diffma import DiffMA
+    from mocapress.codecs import Bound
     from mocapress.errors import ParameterError
 
     try:
@@ -141,10 +147,10 @@ def _codec(
         if learned is not None:
             codecs.learner(made, learned)
         if target_psnr is not None:
-            if not isinstance(made, DiffMA):
+            if Bound.MEAN not in made.can.bounds:
                 raise ParameterError("--target-psnr is for a lossy codec", expected="diffma")
-            made = replace(made, target_psnr=target_psnr)
-        if to is not Packed.MCZ and not isinstance(made, DiffMA):
+            made = replace(made, target_psnr=target_psnr)  # type: ignore[type-var]
+        if to is not Packed.MCZ and not made.can.document:
             raise ParameterError(f"{made.id} makes no {to}", expected="diffma")
     except ParameterError as error:
         usage(f"--codec: {error}")

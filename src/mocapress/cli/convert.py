@@ -32,15 +32,15 @@ def convert(
     output: Output = None,
     to: Annotated[
         str | None,
-        typer.Option("--to", help="Format, e.g. bvh or amc; else what the output's name says."),
+        typer.Option(
+            "--to", help="Format, e.g. bvh or amc; by default the output's suffix says it."
+        ),
     ] = None,
     asf: Asf = None,
     models: Models = None,
     fps: Annotated[
         float | None,
-        typer.Option(
-            "--fps", help="Frames per second, instead of those that the file states.", min=1e-3
-        ),
+        typer.Option("--fps", help="Frames per second, instead of what the file states.", min=1e-3),
     ] = None,
     lenient: Lenient = False,
     jobs: Jobs = 1,
@@ -48,7 +48,7 @@ def convert(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Convert between AMC with ASF and BVH; joint positions stay, nothing is rescaled."""
+    """Convert between AMC with ASF and BVH; joint positions are kept, nothing is rescaled."""
     from mocapress import api
     from mocapress.cli.batch import STREAM, find, run
     from mocapress.cli.models import open_models, places_for

@@ -18,7 +18,7 @@ def decompress(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Restore the original files: byte for byte, or, of a lossy codec, with the decoded values."""
+    """Restore the original files: byte for byte or, after a lossy codec, with decoded values."""
     from mocapress import api
     from mocapress.cli.batch import find, run
     from mocapress.cli.models import open_models, places_for

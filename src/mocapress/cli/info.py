@@ -17,7 +17,7 @@ def info(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Say what is in motion files, compressed files and models."""
+    """Show what motion files, compressed files and models contain."""
     from mocapress import describe
     from mocapress.cli.batch import find, run
     from mocapress.cli.models import open_models, places_for

@@ -14,34 +14,38 @@ Output = Annotated[
     typer.Option(
         "-o",
         "--output",
-        help="File; or folder, for many files or with / at its end; - is stdout.",
+        help="File; or folder, for several files or if it ends in /; - is stdout.",
         metavar="PATH",
     ),
 ]
-Jobs = Annotated[int, typer.Option("-j", "--jobs", min=1, help="Files at a time.")]
+Jobs = Annotated[
+    int, typer.Option("-j", "--jobs", min=1, help="Number of files to work on at a time.")
+]
 Force = Annotated[
     bool,
     typer.Option(
         "--force", "-f", help="Overwrite existing files; write compressed data to a terminal."
     ),
 ]
-Json = Annotated[bool, typer.Option("--json", help="Results as JSON on stdout.")]
+Json = Annotated[bool, typer.Option("--json", help="Print results as JSON.")]
 Asf = Annotated[
     Path | None,
-    typer.Option("--asf", help="Skeleton of the AMC files; else the ASF beside each.", metavar="F"),
+    typer.Option(
+        "--asf", help="Skeleton of the AMC files; by default the ASF beside each.", metavar="F"
+    ),
 ]
 Models = Annotated[
     list[Path] | None,
     typer.Option(
         "--model",
-        help="Model that files need, or a folder of models; may be repeated. Looked for, too: "
-        "beside the files, and in the folders of MOCAPRESS_MODELS.",
+        help="Model that files need, or a folder of models; may be repeated. Models are also "
+        "found beside the files and in the folders of MOCAPRESS_MODELS.",
         metavar="PATH",
         show_default=False,
     ),
 ]
 Lenient = Annotated[
     bool,
-    typer.Option("--lenient", help="Read what is left of files that have lost frames."),
+    typer.Option("--lenient", help="Read files that have lost frames as far as possible."),
 ]
 Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks.", hidden=True)]

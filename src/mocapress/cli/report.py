@@ -76,7 +76,7 @@ def say(text: str) -> None:
 
 
 def is_defect(error: Exception | None) -> bool:
-    """Tell what nobody has foreseen from errors of inputs and of the system."""
+    """Tell defects of mocapress from errors of inputs and of the system."""
     return error is not None and not isinstance(error, MocapressError | OSError | MemoryError)
 
 
@@ -111,7 +111,7 @@ def _row(job: "Job") -> dict[str, Any]:
 
 
 def _finite(value: Any) -> Any:
-    """Put null for what JSON cannot hold: infinity, and what is no number."""
+    """Replace what JSON cannot express, infinities and NaN, by null."""
     if isinstance(value, dict):
         return {key: _finite(part) for key, part in value.items()}
     if isinstance(value, list | tuple):

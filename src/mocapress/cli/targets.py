@@ -1,4 +1,4 @@
-"""Where the outputs of a command go; decided, and refused, before anything is written."""
+"""Where the outputs of a command go: decided, and checked, before anything is written."""
 
 import os
 import sys
@@ -66,7 +66,7 @@ def plan(
 
 
 def refuse_other_kinds(output: str | None, allowed: Sequence[str], others: Iterable[str]) -> None:
-    """Refuse a file whose name says that it is something else than what is written to it."""
+    """Refuse a file whose suffix contradicts what is written to it."""
     if output is None or Path(output).is_dir():
         return
     name = output.lower()
@@ -75,7 +75,7 @@ def refuse_other_kinds(output: str | None, allowed: Sequence[str], others: Itera
 
 
 def known_endings() -> tuple[str, ...]:
-    """Give the endings of all kinds of files that mocapress knows."""
+    """Give the suffixes of all kinds of files that mocapress knows."""
     from mocapress.formats import formats, suffixes
 
     return (*suffixes(formats()), ".mcz", ".mcm", ".json", ".json.xz")
@@ -111,7 +111,7 @@ def _refuse_stdout(*, many: bool, json: bool, text: bool) -> None:
 
 
 def _refuse_equal(jobs: Sequence[Job]) -> None:
-    """Refuse targets that are the same file, also where the file system takes names for equal."""
+    """Refuse targets that are the same file, also if only the file system considers them equal."""
     clashes = []
     alike: dict[str, list[Job]] = defaultdict(list)
     for job in jobs:
@@ -137,7 +137,7 @@ def _refuse_equal(jobs: Sequence[Job]) -> None:
 
 
 def refuse_sources(jobs: Sequence[Job], reads: Iterable[Path | None]) -> None:
-    """Refuse targets that are files which are read, by whatever name."""
+    """Refuse targets that are also inputs, under any name."""
     read = {_identity(path): path for path in reads}
     for job in jobs:
         found = _identity(job.target)

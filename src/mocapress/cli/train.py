@@ -21,13 +21,13 @@ def train(
     ],
     codec: Annotated[
         str | None,
-        typer.Option("--codec", help="Codec that is to learn; else that of compress."),
+        typer.Option("--codec", help="Codec that learns; by default that of compress."),
     ] = None,
     force: Force = False,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Learn a model from clips, for compressing others like these; see compress --model."""
+    """Learn a model from clips, to compress similar clips with compress --model."""
     from mocapress import codecs, models
     from mocapress.cli.batch import STREAM, Job, find, run, usage
     from mocapress.cli.report import say

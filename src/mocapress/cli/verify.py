@@ -15,7 +15,7 @@ def verify(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Decode compressed files and check every checksum; exit code 3 when one is damaged."""
+    """Decode compressed files and check all checksums; exit code 3 if one is damaged."""
     from mocapress import api
     from mocapress.cli.batch import find, run
     from mocapress.cli.models import open_models, places_for

@@ -11,22 +11,27 @@ from mocapress.cli.options import Asf, Debug, Force, Lenient
 def view(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Motion files; of two, the second is compared with the first."),
+        typer.Argument(help="Motion files; given two, the second is compared with the first."),
     ] = None,
     export: Annotated[
         Path | None,
         typer.Option("--export", help="Write the page to this file instead.", metavar="PAGE.html"),
     ] = None,
     lossless: Annotated[
-        bool, typer.Option("--lossless", help="Export exact values, not DiffMA.")
+        bool, typer.Option("--lossless", help="Export exact values instead of DiffMA.")
     ] = False,
     max_error: Annotated[
         float,
-        typer.Option("--max-error", help="Of an exported value, in the file's units.", min=1e-12),
+        typer.Option(
+            "--max-error",
+            help="Largest error of an exported value, in the file's units.",
+            min=1e-12,
+        ),
     ] = 0.01,
     asf: Asf = None,
     port: Annotated[
-        int, typer.Option("--port", help="Port on 127.0.0.1; 0 takes a free one.", min=0, max=65535)
+        int,
+        typer.Option("--port", help="Port on 127.0.0.1; 0 chooses a free one.", min=0, max=65535),
     ] = 0,
     browser: Annotated[
         bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
@@ -35,7 +40,7 @@ def view(
     force: Force = False,
     debug: Debug = False,
 ) -> None:
-    """Play motion files in the browser, one beside the other; or write a page that does."""
+    """Play motion files in the browser, side by side, or write a page that plays them."""
     from mocapress.cli.report import message, say
     from mocapress.cli.targets import known_endings, refuse_other_kinds
     from mocapress.cli.warned import collecting, kept

@@ -6,21 +6,39 @@ through this registry.
 
 import dataclasses
 import importlib
-from typing import Any, get_type_hints
+from typing import TYPE_CHECKING, Any, get_type_hints
 
-from mocapress.codecs.contract import Chunk, Codec, Encoded, Model, Trainable
+from mocapress.codecs.contract import (
+    Bound,
+    Capabilities,
+    Chunk,
+    Codec,
+    Encoded,
+    Model,
+    Others,
+    Scope,
+    digest_of,
+)
 from mocapress.errors import ParameterError, UnsupportedError
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoints
 
 __all__ = [
     "DEFAULT_CODEC",
+    "GROUP",
     "LEVELS",
+    "Bound",
+    "Capabilities",
     "Chunk",
     "Codec",
     "Encoded",
     "Model",
+    "Others",
+    "Scope",
     "codec",
     "codec_ids",
-    "has_level",
+    "digest_of",
     "learner",
     "spec",
     "with_level",
@@ -29,6 +47,9 @@ __all__ = [
 DEFAULT_CODEC = "exact"
 LEVELS = range(1, 10)
 """From the fastest to the strongest, of codecs with the parameter ``level``."""
+
+GROUP = "mocapress.codecs"
+"""The group of entry points by which other packages add codecs: id -> class."""
 
 # id -> module and class; imported when first asked for, so that one codec does not pay for others.
 _REGISTRY: dict[str, tuple[str, str]] = {
@@ -39,8 +60,40 @@ _REGISTRY: dict[str, tuple[str, str]] = {
 
 
 def codec_ids() -> list[str]:
-    """Give the ids of all registered codecs."""
-    return list(_REGISTRY)
+    """Give the ids of all codecs: those of mocapress, then those of other packages."""
+    return list(dict.fromkeys([*_REGISTRY, *sorted(_of_others().names)]))
+
+
+def _class(name: str) -> Any:
+    """Find the class of a codec.
+
+    Raises
+    ------
+    ParameterError
+        When there is no such codec.
+    UnsupportedError
+        When the package that has it cannot be imported.
+
+    """
+    if name in _REGISTRY:
+        module, attribute = _REGISTRY[name]
+        return getattr(importlib.import_module(module), attribute)
+    for entry in _of_others().select(name=name):
+        try:
+            found = entry.load()
+            if not issubclass(found, Codec):
+                raise ImportError(f"{entry.value} is not a mocapress.codecs.Codec")
+            return found
+        except (ImportError, AttributeError, TypeError) as error:
+            package = entry.dist.name if entry.dist else entry.module
+            raise UnsupportedError(f"codec {name} of {package} cannot be used: {error}") from error
+    raise ParameterError("unknown codec", expected=", ".join(codec_ids()), found=repr(name))
+
+
+def _of_others() -> "EntryPoints":
+    from importlib.metadata import entry_points
+
+    return entry_points(group=GROUP)
 
 
 def codec(text: str) -> Codec:
@@ -50,13 +103,12 @@ def codec(text: str) -> Codec:
     ------
     ParameterError
         When the id, a parameter's name or its value is not known.
+    UnsupportedError
+        When the codec is another package's, which cannot be imported.
 
     """
     name, _, rest = text.partition(":")
-    if name not in _REGISTRY:
-        raise ParameterError("unknown codec", expected=", ".join(_REGISTRY), found=repr(name))
-    module, attribute = _REGISTRY[name]
-    cls: Any = getattr(importlib.import_module(module), attribute)
+    cls = _class(name)
     types = get_type_hints(cls)
     known = {field.name: types[field.name] for field in dataclasses.fields(cls)}
     values: dict[str, Any] = {}
@@ -85,8 +137,8 @@ def spec(made: Codec) -> str:
     return f"{made.id}:{','.join(changed)}" if changed else made.id
 
 
-def learner(made: Codec, model: Model | None = None) -> Trainable:
-    """Give the codec as one that learns, and check that a model is its own.
+def learner(made: Codec, model: Model | None = None) -> Codec:
+    """Give a codec back after checking that it learns, and that a model is its own.
 
     Raises
     ------
@@ -94,16 +146,11 @@ def learner(made: Codec, model: Model | None = None) -> Trainable:
         When it does not learn, or the model is another codec's.
 
     """
-    if not isinstance(made, Trainable):
+    if not made.can.trains:
         raise ParameterError(f"codec {made.id} takes no model")
     if model is not None and model.codec != made.id:
         raise ParameterError("model of another codec", expected=made.id, found=repr(model.codec))
     return made
-
-
-def has_level(made: Codec) -> bool:
-    """Tell whether a codec has the parameter ``level``."""
-    return "level" in {field.name for field in dataclasses.fields(made)}  # type: ignore[arg-type]
 
 
 def with_level(made: Codec, level: int) -> Codec:
@@ -115,7 +162,7 @@ def with_level(made: Codec, level: int) -> Codec:
         When the codec has no levels, or not this one.
 
     """
-    if not has_level(made):
+    if not made.can.levels:
         raise ParameterError(f"codec {made.id} has no levels")
     if level not in LEVELS:
         raise ParameterError("level", expected="1 to 9", found=repr(level))

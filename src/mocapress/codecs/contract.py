@@ -2,21 +2,69 @@
 
 import hashlib
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from math import inf
-from typing import Any, ClassVar, Protocol, runtime_checkable
+from types import MappingProxyType
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.motion import Clip, Column
+from mocapress.errors import ParameterError
+from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.records import Writer
+
+CHANNELS = "channels"
+"""The kind of stream that all codecs of this version take: frames of float64 channels."""
+
+Others = Mapping[bytes, NDArray[np.float64]]
+"""Decoded chunks of other clips, (F, C) float64, by their ``digest_of``."""
+NO_OTHERS: Others = MappingProxyType({})
+
+
+class Bound(StrEnum):
+    """What a codec can be asked to keep of its errors."""
+
+    NONE = "none"
+    MEAN = "mean"
+    """The mean squared error, by the parameter ``target_psnr``."""
+    LARGEST = "largest"
+    """The largest error of any value, by the parameter ``max_error``."""
+
+
+class Scope(StrEnum):
+    """What a codec sees when it codes a clip."""
+
+    CLIP = "clip"
+    LIBRARY = "library"
+    """Other clips, too: chunks may need chunks of theirs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Capabilities:
+    """What a codec can do, declared in one place."""
+
+    lossless: bool
+    levels: bool = False
+    """Whether it has the parameter ``level``, 1 (the fastest) to 9 (the strongest)."""
+    trains: bool = False
+    """Whether it learns models; others ignore the models that they are given."""
+    bounds: frozenset[Bound] = frozenset()
+    """Empty for a lossless codec."""
+    scope: Scope = Scope.CLIP
+    streams: frozenset[str] = frozenset({CHANNELS})
+    """Kinds of streams that it takes."""
+    document: bool = False
+    """Whether it can write a clip as DiffMA JSON."""
+    measured: bool = False
+    """Whether there is more to say of what it coded than sizes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """Consecutive frames, coded together."""
+    """A run of frames, coded."""
 
     first: int
     """Index of the first frame."""
@@ -24,11 +72,13 @@ class Chunk:
     payload: bytes
     restart: bool = True
     """Whether decoding may begin here; otherwise it begins at the last chunk before with it."""
+    needs: tuple[bytes, ...] = ()
+    """Which chunks of other clips decoding needs, by their ``digest_of``; scope library only."""
 
 
 @dataclass(frozen=True, slots=True)
 class Encoded:
-    """A coded clip: what ``decode`` needs besides the columns and a model."""
+    """A stream, coded: what ``decode`` needs beside the columns, a model and other chunks."""
 
     header: bytes
     """The codec's own: whatever concerns all chunks."""
@@ -47,30 +97,61 @@ class Model:
 
     @property
     def digest(self) -> bytes:
-        """The name that files use for the model: SHA-256 of id and payload with their lengths."""
+        """What files name the model by: SHA-256 of id and payload, their lengths before them."""
         named = Writer()
         named.bytes(self.codec.encode())
         named.bytes(self.payload)
         return hashlib.sha256(named.data).digest()
 
 
+def digest_of(values: NDArray[np.float64]) -> bytes:
+    """Give what names a decoded chunk, (F, C) float64: SHA-256 of F, C and the values' bytes."""
+    named = Writer()
+    for size in values.shape:
+        named.integer(size)
+    named.data += np.ascontiguousarray(values, dtype="<f8").tobytes()
+    return hashlib.sha256(named.data).digest()
+
+
 class Codec(ABC):
-    """A codec: a frozen dataclass whose fields are its parameters, with their defaults.
+    """A codec: a frozen dataclass whose fields are its parameters, with their usual values.
 
     ``encode`` and ``decode`` are pure functions of their arguments and the parameters: the same
-    bytes on every run and every machine.
+    bytes on every run and every machine. What is not abstract here belongs to a capability; a
+    codec that declares it overrides it.
     """
 
     __slots__ = ()
 
     id: ClassVar[str]
-    lossless: ClassVar[bool]
+    can: ClassVar[Capabilities]
+
+    @property
+    def lossless(self) -> bool:
+        """Whether the bits of all values come back."""
+        return self.can.lossless
 
     @abstractmethod
-    def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:
-        """Code a clip; ``(F, C)`` values, any float64 including NaN, infinities and -0.
+    def encode(
+        self,
+        stream: Stream,
+        *,
+        skeleton: Skeleton | None = None,
+        model: Model | None = None,
+        others: Others = NO_OTHERS,
+    ) -> Encoded:
+        """Code a stream; ``(F, C)`` values, any float64 including NaN, infinities and -0.
 
-        A model that was learned from other columns makes the result larger, never wrong.
+        Parameters
+        ----------
+        stream
+            Of a kind that the codec takes.
+        skeleton
+            What the joints of the columns belong to; may be used, and is not needed to decode.
+        model
+            One that was learned from other columns costs ratio, not correctness.
+        others
+            Chunks that the codec may refer to; of scope library only.
 
         Raises
         ------
@@ -87,33 +168,60 @@ class Codec(ABC):
         columns: Sequence[Column],
         *,
         model: Model | None = None,
+        others: Others = NO_OTHERS,
+        stop: int | None = None,
     ) -> NDArray[np.float64]:
         """Decode consecutive chunks, the first a restart: (sum of their frames, C) float64.
+
+        Parameters
+        ----------
+        header, chunks, columns
+            What ``encode`` gave for a stream of these columns.
+        model
+            The one with which the stream was coded, if any.
+        others
+            At least the chunks of other clips that these chunks need.
+        stop
+            Give only the first so many frames; those behind need not be decoded or checked.
 
         Raises
         ------
         CorruptError
             When header, payload or model do not follow the codec's format, or the model with
-            which the clip was coded is missing. Never anything else, and never with more memory
-            than a small multiple of (frames x columns x 8) bytes.
+            which the stream was coded, or a chunk that is needed, is missing. Never anything
+            else, and never with more memory than a small multiple of (frames x columns x 8) bytes.
 
         """
+
+    def train(self, streams: Iterable[Stream]) -> Model:
+        """Learn a model from streams, which are gone through once (capability ``trains``).
+
+        The same model on every run and every machine.
+        """
+        raise ParameterError(f"codec {self.id} takes no model")
 
     def largest_errors(self, columns: Sequence[Column]) -> list[float]:
-        """Give the largest error allowed in each column; infinite where no bound was asked for."""
+        """Give the error up to which each column may come back; infinite where none was asked."""
         return [0.0 if self.lossless else inf] * len(columns)
 
+    def measure(self, clip: Clip, encoded: Encoded, raw_bytes: int) -> dict[str, float]:
+        """Give what is measured of this codec alone (capability ``measured``): name -> value."""
+        return {}
 
-@runtime_checkable
-class Trainable(Protocol):
-    """A codec that learns from other clips. Others ignore the models that they are given."""
+    def document(self, clip: Clip, layout: bytes = b"") -> bytes:
+        """Code a clip as DiffMA JSON, which was read and decoded again (capability ``document``).
 
-    def train(self, clips: Iterable[Clip]) -> Model:
-        """Learn a model from clips, which are iterated over once.
+        Parameters
+        ----------
+        clip
+            Finite values only.
+        layout
+            What makes the original file again; may be empty.
 
-        Gives the same model on every run and every machine.
+        Raises
+        ------
+        VerificationError
+            When what was decoded is not what was encoded, or breaks a bound.
+
         """
-        ...
-
-
-Parameters = dict[str, Any]
+        raise ParameterError(f"codec {self.id} writes no JSON", expected="diffma")

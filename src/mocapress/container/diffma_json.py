@@ -7,9 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from mocapress import codecs
-from mocapress.codecs.diffma import DiffMA
-from mocapress.codecs.diffma.codec import by_channel
-from mocapress.codecs.diffma.document import Document, Level, read_document
+from mocapress.codecs import Codec
+from mocapress.codecs.diffma.document import Document, read_document
 from mocapress.codecs.fallback import naming_faults
 from mocapress.container import Kind, pack, unpack
 from mocapress.errors import (
@@ -17,12 +16,10 @@ from mocapress.errors import (
     FormatError,
     ParameterError,
     UnsupportedError,
-    VerificationError,
 )
 from mocapress.formats import columns_of
 from mocapress.formats.layout import Layout
 from mocapress.motion import Clip, Column
-from mocapress.motion.clip import decimal_seconds
 from mocapress.records import Reader, Writer
 from mocapress.source import JSON_SUFFIXES, Named, Source
 
@@ -50,7 +47,7 @@ def stem(name: str) -> str:
 
 def to_json(
     source: Named | Clip,
-    codec: str | DiffMA = "diffma",
+    codec: str | Codec = "diffma",
     *,
     asf_path: str | Path | None = None,
 ) -> bytes:
@@ -84,15 +81,15 @@ def to_json(
     return file_to_json(Source(source), made, asf_path=asf_path)
 
 
-def diffma_codec(text: str) -> DiffMA:
-    """Make the codec of a text, which must be ``diffma``."""
+def diffma_codec(text: str) -> Codec:
+    """Make the codec of a text, which must write DiffMA JSON."""
     made = codecs.codec(text)
-    if not isinstance(made, DiffMA):
+    if not made.can.document:
         raise ParameterError("JSON is written by one codec", expected="diffma", found=repr(made.id))
     return made
 
 
-def file_to_json(source: Source, codec: DiffMA, *, asf_path: str | Path | None = None) -> bytes:
+def file_to_json(source: Source, codec: Codec, *, asf_path: str | Path | None = None) -> bytes:
     """Code a motion file; what comes back of it, by ``json_to_file``, has its layout.
 
     Raises
@@ -110,7 +107,7 @@ def file_to_json(source: Source, codec: DiffMA, *, asf_path: str | Path | None =
     return clip_to_json(clip, codec, layout=bytes(writer.data) + pack(layout.to_bytes()))
 
 
-def clip_to_json(clip: Clip, codec: DiffMA, *, layout: bytes = b"") -> bytes:
+def clip_to_json(clip: Clip, codec: Codec, *, layout: bytes = b"") -> bytes:
     """Code a clip: JSON text, which was read and decoded again and keeps the largest errors.
 
     Raises
@@ -123,38 +120,7 @@ def clip_to_json(clip: Clip, codec: DiffMA, *, layout: bytes = b"") -> bytes:
     """
     _refuse_not_finite(clip)
     with naming_faults(codec):
-        return _checked_json(clip, codec, layout)
-
-
-def _checked_json(clip: Clip, codec: DiffMA, layout: bytes) -> bytes:
-    plans, coding, channels = codec.plan(clip), codec.coding, by_channel(clip.values)
-    levels = []
-    for bound in codec.level_bounds:
-        level = codec.level(bound)
-        records = level.coding.encode(channels, level.plan(clip))
-        levels.append(Level(bound, tuple(records)))
-    document = Document(
-        tuple(column.name for column in clip.columns),
-        coding,
-        plans,
-        tuple(coding.encode(channels, plans)),
-        clip.frames,
-        tuple(levels),
-        clip.skeleton,
-        tuple((column.joint, column.kind) for column in clip.columns),
-        None if clip.frame_time is None else decimal_seconds(clip.frame_time),
-        layout,
-    )
-    text = document.to_json()
-    decoded = read_document(text).decode()
-    limits = np.array([plan.max_error for plan in plans])
-    same = (
-        by_channel(decoded).tobytes()
-        == coding.decode(document.records, plans, clip.frames).tobytes()
-    )
-    if not same or (np.abs(decoded - clip.values) > limits).any():
-        raise VerificationError("DiffMA JSON does not give back what was encoded")
-    return text
+        return codec.document(clip, layout)
 
 
 def named(name: str, text: bytes) -> bytes:

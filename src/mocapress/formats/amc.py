@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.errors import FormatError
-from mocapress.formats.asf import format_asf
+from mocapress.formats.asf import asf_words, format_asf
 from mocapress.formats.contract import Format, Split, split_of
 from mocapress.formats.layout import Slot, build, print_clip
+from mocapress.formats.names import decoded, words
 from mocapress.formats.problems import Problem
 from mocapress.formats.rows import (
     Body,
@@ -52,18 +53,21 @@ def write(clip: Clip) -> dict[str, bytes]:
     radians = any(column.unit == "rad" for column in clip.columns)
     header = format_header(clip.frame_time, "rad" if radians else "deg") + b"\n"
     literals = [b""]
+    bones = _bone_words(clip)
     for i, column in enumerate(clip.columns):
         fresh = i == 0 or column.joint != clip.columns[i - 1].joint
-        literals.append(b"\n" + _bone(clip, i) + b" " if fresh else b" ")
+        literals.append(f"\n{bones[column.joint]} ".encode() if fresh else b" ")
     literals.append(b"\n")
     files = {".amc": print_clip(clip, header, literals, counter=True)}
     return files | ({".asf": format_asf(clip.skeleton)} if clip.skeleton else {})
 
 
-def _bone(clip: Clip, column: int) -> bytes:
-    of = clip.columns[column]
-    name = clip.skeleton.joints[of.joint].name if clip.skeleton else of.name.rpartition(".")[0]
-    return name.encode("latin-1", "replace")
+def _bone_words(clip: Clip) -> dict[int, str]:
+    """Give the word of each joint, as the ASF of its skeleton has it."""
+    if clip.skeleton is not None:
+        return dict(enumerate(asf_words(clip.skeleton)))
+    names = {column.joint: column.name.rpartition(".")[0] for column in clip.columns}
+    return dict(zip(names, words(list(names.values()), frozenset()), strict=True))
 
 
 def read_body(data: bytes, file: str | None = None) -> tuple[Body, RowShape, list[Problem]]:
@@ -114,10 +118,12 @@ def clip_of(
     name: str = "",
 ) -> Clip:
     """Make the clip; angles are in the unit that the header names, else the skeleton's."""
-    bones = [
-        (word.decode("latin-1"), count)
-        for word, count in zip(shape.words, shape.counts, strict=True)
-    ]
+    names = [decoded(word) for word in shape.words]
+    if skeleton is not None:
+        root = skeleton.joints[0].name
+        is_root = [word.lower() == b"root" for word in shape.words]
+        names = [root if here else name for here, name in zip(is_root, names, strict=True)]
+    bones = list(zip(names, shape.counts, strict=True))
     radians = re.search(rb"^\s*:radians", header, re.MULTILINE | re.IGNORECASE)
     degrees = re.search(rb"^\s*:degrees", header, re.MULTILINE | re.IGNORECASE)
     angle_unit = "rad" if radians else "deg" if degrees else None
@@ -231,9 +237,9 @@ def _expected(body: Body, shape: RowShape) -> str:
     if body.stop == "frame number":
         return "the next frame's number, or the end of the file"
     if body.stop in ("line end", "number"):
-        bone = shape.words[body.error_item].decode("latin-1")
+        bone = decoded(shape.words[body.error_item])
         return f"{shape.counts[body.error_item]} numbers for bone {bone}"
-    return f"bone {shape.words[body.error_item].decode('latin-1')}"
+    return f"bone {decoded(shape.words[body.error_item])}"
 
 
 FORMAT = Format(

@@ -10,11 +10,15 @@ import numpy as np
 
 from mocapress.errors import FormatError
 from mocapress.formats.contract import Format
+from mocapress.formats.names import decoded, escaped, words
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 
 _CHANNELS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")
 _KEYWORD = re.compile(rb"^\s*:(bonedata|root|hierarchy|version)\b", re.MULTILINE | re.IGNORECASE)
-_LIMIT = re.compile(r"\(\s*([^\s()]+)[\s,]+([^\s()]+)\s*\)")
+_RESERVED = frozenset({"root", "begin", "end"})
+# In the documentation: the name of a root that is called otherwise.
+_ROOT_NAME = re.compile(rb"^[ \t]*mocapress-root[ \t]+(\S+)", re.MULTILINE)
+_LIMIT = re.compile(r"\(\s*([^\s(),]+)[\s,]+([^\s(),]+)\s*\)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +60,8 @@ class _Parser:
     def __init__(self, data: bytes, file: str | None) -> None:
         self.file = file
         self.lines = iter(list(_lines(data)))
+        named = _ROOT_NAME.search(data)
+        self.root_name = named[1].decode("latin-1") if named else "root"
 
     def fail(self, line: int, what: str, expected: str, found: str | None = None) -> NoReturn:
         raise FormatError(what, file=self.file, line=line, expected=expected, found=found)
@@ -69,7 +75,7 @@ class _Parser:
             if line.key.startswith(":"):
                 section = line.key
                 if section == ":name":
-                    name = " ".join(line.words)
+                    name = _name(" ".join(line.words))
                 elif section == ":root":
                     bones.insert(0, _Bone("root", line.number))
             elif section == ":units" and line.words:
@@ -90,6 +96,7 @@ class _Parser:
             length = float(units["length"]) if "length" in units else None
         except ValueError:
             self.fail(1, "unit of length", "a number", repr(units["length"]))
+        bones[0].name = self.root_name
         joints = _joints(bones)
         return Skeleton(joints, "fixed", angle, length, name, {"mass": units.get("mass", "")})
 
@@ -151,7 +158,7 @@ class _Parser:
 
         linked = {0}
         for line in lines:
-            parents = find(line, line.text.split()[0])
+            parents = find(line, line.text.split(" ", 1)[0])
             parent = next((i for i in reversed(parents) if i in linked), parents[0])
             for word in line.words:
                 child = next((i for i in find(line, word) if i not in linked), None)
@@ -198,9 +205,13 @@ class _Parser:
             self.fail(line, "limits", "a number or inf", repr(word))
 
 
+def _name(text: str) -> str:
+    return decoded(text.encode("latin-1"))
+
+
 def _lines(data: bytes) -> Iterator[_Line]:
-    for number, text in enumerate(data.decode("latin-1").split("\n"), 1):
-        words = text.split("#", 1)[0].split()
+    for number, text in enumerate(data.split(b"\n"), 1):
+        words = [word.decode("latin-1") for word in text.split(b"#", 1)[0].split()]
         if words:
             yield _Line(number, words[0].lower(), words[1:], " ".join(words))
 
@@ -237,7 +248,7 @@ def _joints(bones: list[_Bone]) -> tuple[Joint, ...]:
         order.append(i)
     return tuple(
         Joint(
-            bone.name,
+            _name(bone.name),
             -1 if i == 0 else place[bone.parent],
             bone.position if i == 0 else bones[bone.parent].vector,
             bone.channels,
@@ -256,14 +267,16 @@ def format_asf(skeleton: Skeleton) -> bytes:
     Every joint but the root has one bone, at whose end all its children lie.
     """
     vectors = bone_vectors(skeleton)
+    called = asf_words(skeleton)
     root = skeleton.joints[0]
     length = skeleton.length_unit if skeleton.length_unit is not None else 1.0
     lines = [
         ":version 1.10",
-        f":name {skeleton.name or 'skeleton'}",
+        f":name {escaped(skeleton.name or 'skeleton', '#')}",
         ":units",
         f"  mass 1.0\n  length {length!r}\n  angle {skeleton.angle_unit}",
         ":documentation\n   written by mocapress",
+        *([f"   mocapress-root {escaped(root.name, ' #')}"] if root.name != "root" else []),
         ":root",
         f"   order {' '.join(root.channels).upper()}",
         f"   axis {root.axis_order.upper()}",
@@ -276,7 +289,7 @@ def format_asf(skeleton: Skeleton) -> bytes:
         x, y, z = vectors[i]
         direction = (x / size, y / size, z / size) if size else (0.0, 1.0, 0.0)
         lines += [
-            f"  begin\n     id {i}\n     name {joint.name}",
+            f"  begin\n     id {i}\n     name {called[i]}",
             f"     direction {_text(direction)}\n     length {size!r}",
             f"     axis {_text(joint.axis)}  {joint.axis_order.upper()}",
         ]
@@ -286,12 +299,19 @@ def format_asf(skeleton: Skeleton) -> bytes:
             lines.append("    limits " + "\n           ".join(f"({a!r} {b!r})" for a, b in limits))
         lines.append("  end")
     lines.append(":hierarchy\n  begin")
-    for i, joint in enumerate(skeleton.joints):
-        names = [child.name for child in skeleton.joints if child.parent == i]
+    children: list[list[str]] = [[] for _ in skeleton.joints]
+    for i, joint in enumerate(skeleton.joints[1:], 1):
+        children[joint.parent].append(called[i])
+    for i, names in enumerate(children):
         if names:
-            lines.append(f"    {joint.name if i else 'root'} {' '.join(names)}")
+            lines.append(f"    {called[i]} {' '.join(names)}")
     lines.append("  end\n")
-    return "\n".join(lines).encode("latin-1", "replace")
+    return "\n".join(lines).encode()
+
+
+def asf_words(skeleton: Skeleton) -> list[str]:
+    """Give the words by which an ASF and its AMC call the joints; the root is ``root``."""
+    return ["root", *words([joint.name for joint in skeleton.joints[1:]], _RESERVED)]
 
 
 def bone_vectors(skeleton: Skeleton) -> list[Vec3]:

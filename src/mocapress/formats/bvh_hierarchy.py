@@ -7,6 +7,7 @@ from math import isfinite
 from typing import NoReturn
 
 from mocapress.errors import FormatError
+from mocapress.formats.names import decoded, escaped
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 
 _KINDS = {
@@ -83,9 +84,14 @@ class _Parser:
             piece = _PIECE.search(self.data, position)
             if piece is None:
                 self.fail(len(self.data), "no motion", "MOTION", "the end of the file")
-            text = piece.group().decode("latin-1").strip().removeprefix("\xef\xbb\xbf")
-            key, words = text.split()[0].upper(), text.split()[1:]
             at, position = piece.start(), piece.end()
+            text = piece.group().removeprefix(b"\xef\xbb\xbf").strip()
+            if not text or text.startswith((b"#", b"//")):
+                line_end = self.data.find(b"\n", at)
+                position = line_end if line_end >= 0 else len(self.data)
+                continue
+            key, *words = (word.decode("latin-1") for word in text.split())
+            key = key.upper()
             if waiting and key != "{":
                 self.fail(at, f"joint {waiting.name}", "{")
             if key == "MOTION":
@@ -98,9 +104,23 @@ class _Parser:
                 self.stack.append(waiting)
                 waiting = None
             elif key in ("ROOT", "JOINT", "END"):
-                waiting = self._begin(at, key, text[len(key) :].strip())
+                waiting = self._begin(at, key, decoded(text[len(key) :].strip()))
             else:
+                position = self._more_words(position, key, words)
                 self._inside(at, key, words)
+
+    def _more_words(self, position: int, key: str, words: list[str]) -> int:
+        """Append the words of the next lines, where OFFSET or CHANNELS go on there."""
+        needed = 3 if key == "OFFSET" else 0
+        if key == "CHANNELS" and words and words[0].isdecimal():
+            needed = 1 + min(int(words[0][:3]), 99)
+        while len(words) < needed:
+            piece = _PIECE.search(self.data, position)
+            if piece is None or piece.group() in b"{}":
+                break
+            words += (word.decode("latin-1") for word in piece.group().split())
+            position = piece.end()
+        return position
 
     def _inside(self, at: int, key: str, words: list[str]) -> None:
         if key == "}":
@@ -193,7 +213,7 @@ def format_hierarchy(skeleton: Skeleton, frames: int, frame_time: Decimal) -> by
         joint = skeleton.joints[i]
         names = " ".join(_NAMES[kind] for kind in joint.channels)
         lines += [
-            f"{tab}{'JOINT' if joint.parent >= 0 else 'ROOT'} {joint.name}",
+            f"{tab}{'JOINT' if joint.parent >= 0 else 'ROOT'} {escaped(joint.name, '{}')}",
             tab + "{",
             f"{tab}\tOFFSET {_text(joint.offset)}",
             f"{tab}\tCHANNELS {len(joint.channels)} {names}".rstrip(),
@@ -208,7 +228,7 @@ def format_hierarchy(skeleton: Skeleton, frames: int, frame_time: Decimal) -> by
         pending.append((-1, depth))
         pending += [(child, depth + 1) for child in reversed(children.get(i, []))]
     lines += ["MOTION", f"Frames: {frames}", f"Frame Time: {frame_time:f}", ""]
-    return "\n".join(lines).encode("latin-1", "replace")
+    return "\n".join(lines).encode()
 
 
 def _text(vector: Vec3) -> str:

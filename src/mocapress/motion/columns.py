@@ -1,6 +1,6 @@
 """Columns of a skeleton's channels."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from mocapress.errors import FormatError
 from mocapress.motion.clip import Column
@@ -11,8 +11,13 @@ _ROOT_CHANNELS = ("tx", "ty", "tz", "rx", "ry", "rz")
 
 def skeleton_columns(skeleton: Skeleton) -> tuple[Column, ...]:
     """Give the columns of all joints' channels, in the order of the joints."""
-    bones = [(joint.name, len(joint.channels)) for joint in skeleton.joints if joint.channels]
-    return bone_columns(skeleton, bones)
+    columns: list[Column] = []
+    seen: dict[str, int] = {}
+    for index, joint in enumerate(skeleton.joints):
+        if joint.channels:
+            nth = seen[joint.name] = seen.get(joint.name, 0) + 1
+            columns += _columns(joint.name, nth, index, joint.channels, skeleton.angle_unit)
+    return tuple(columns)
 
 
 def bone_columns(
@@ -24,8 +29,8 @@ def bone_columns(
     ----------
     skeleton
         Where to look up the bones: by name, or else by name ignoring case. The n-th bone of a name
-        is the n-th joint of that name. Without a skeleton the kinds of columns are unknown, except
-        for a first bone with six numbers, which is a root.
+        is the n-th joint of that name, those without channels last. Without a skeleton the kinds of
+        columns are unknown, except for a first bone with six numbers, which is a root.
     bones
         Name and number of values of each.
     angle_unit
@@ -46,7 +51,8 @@ def bone_columns(
         joint, kinds = place, tuple(f"v{k + 1}" for k in range(count))
         if skeleton is not None:
             joint = _joint_of(skeleton, exact.get(name) or folded.get(name.lower(), []), name, nth)
-            kinds = skeleton.joints[joint].channels
+            # Values of a bone without degrees of freedom are kept, and move nothing.
+            kinds = skeleton.joints[joint].channels or kinds
             if len(kinds) != count:
                 raise FormatError(
                     f"values of bone {name}",
@@ -55,17 +61,26 @@ def bone_columns(
                 )
         elif place == 0 and count == len(_ROOT_CHANNELS):
             kinds = _ROOT_CHANNELS
-        label = name if nth == 1 else f"{name}#{nth}"
-        for kind in kinds:
-            unit = angle_unit if kind[0] == "r" else "length" if kind[0] in "tl" else ""
-            columns.append(Column(f"{label}.{kind}", joint, kind, unit))
+        columns += _columns(name, nth, joint, kinds, angle_unit)
     return tuple(columns)
+
+
+def _columns(
+    name: str, nth: int, joint: int, kinds: tuple[str, ...], angle_unit: str
+) -> Iterator[Column]:
+    """Give the columns of the n-th bone of a name."""
+    label = name if nth == 1 else f"{name}#{nth}"
+    for kind in kinds:
+        unit = angle_unit if kind[0] == "r" else "length" if kind[0] in "tl" else ""
+        yield Column(f"{label}.{kind}", joint, kind, unit)
 
 
 def _by_name(skeleton: Skeleton | None) -> tuple[dict[str, list[int]], dict[str, list[int]]]:
     exact: dict[str, list[int]] = {}
     folded: dict[str, list[int]] = {}
-    for i, joint in enumerate(skeleton.joints if skeleton else ()):
+    joints = list(enumerate(skeleton.joints if skeleton else ()))
+    # Bones without degrees of freedom usually have no values.
+    for i, joint in sorted(joints, key=lambda item: not item[1].channels):
         exact.setdefault(joint.name, []).append(i)
         folded.setdefault(joint.name.lower(), []).append(i)
     return exact, folded

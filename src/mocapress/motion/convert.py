@@ -183,7 +183,6 @@ def _one_end_each(
     joints: list[Joint] = []
     origin: list[int] = []
     index: dict[int, int] = {}
-    used: dict[str, int] = {}
 
     def connect(parent: int, target: Vec3, name: str) -> int:
         """Give the joint from whose bone's end a target can be reached."""
@@ -200,27 +199,18 @@ def _one_end_each(
         return len(joints) - 1
 
     for i, joint in enumerate(skeleton.joints):
-        parent = -1 if i == 0 else connect(joint.parent, places[i], _name(joint.name, {}))
+        parent = -1 if i == 0 else connect(joint.parent, places[i], joint.name)
         index[i] = len(joints)
         rotation = ("rx", "ry", "rz") if joint.channels or i == 0 else ()
         channels = (("tx", "ty", "tz") if moves[i] else ()) + rotation
-        name = "root" if i == 0 else _name(joint.name, used)
-        joints.append(Joint(name, parent, places[i] if i else (0.0, 0.0, 0.0), channels))
+        joints.append(Joint(joint.name, parent, places[i] if i else (0.0, 0.0, 0.0), channels))
         origin.append(i if channels else -1)
         for end in joint.ends:
             if end == common[i] and i:
                 joints[index[i]] = replace(joints[index[i]], ends=(end,))
             else:
-                connect(i, end, f"{_name(joint.name, {})}_end")
+                connect(i, end, f"{joint.name}_end")
     return tuple(joints), origin
-
-
-def _name(name: str, used: dict[str, int]) -> str:
-    """Make a name that an AMC can hold: no blanks, no second of the same."""
-    made = "_".join(name.split()).replace("#", "_") or "bone"
-    made = f"_{made}" if made.isdigit() or made[0] in ":#(" or made == "root" else made
-    used[made] = used.get(made, 0) + 1
-    return made if used[made] == 1 else f"{made}_{used[made]}"
 
 
 def _finish(clip: Clip, skeleton: Skeleton, values: list[Array], number: NumberFormat) -> Clip:

@@ -1,5 +1,6 @@
 import { FileError, quoted } from "./file_error.js";
 import { grouped } from "./grouped.js";
+import { decodedName, words as wordsOf } from "./names.js";
 import { Rows } from "./rows.js";
 import { latin1, Scanner } from "./scanner.js";
 import { channelNames } from "./skeleton.js";
@@ -43,7 +44,7 @@ function firstFrame(text, begin) {
   const bones = [];
   let first = 0;
   for (const raw of linesFrom(text, text.indexOf("\n", begin) + 1 || text.length)) {
-    const words = raw.trim().split(/\s+/);
+    const words = wordsOf(raw);
     if (/^-?\d+$/.test(raw.trim())) break;
     if (PADDING.test(raw) || !words[0] || words[0].startsWith("#")) continue;
     bones.push({ name: words[0], count: words.length - 1, first });
@@ -125,10 +126,14 @@ function readValues(scanner, values, first, bone, fail) {
 /** Joint and kind of each column: by name, else by name without regard to case. */
 function columnsOf(skeleton, bones) {
   const { joints } = skeleton;
+  // Bones without degrees of freedom usually have no values.
+  const order = (group) => group.sort((a, b) => !joints[a].channels.length - !joints[b].channels.length);
   const exact = grouped(joints, (joint) => joint.name);
   const folded = grouped(joints, (joint) => joint.name.toLowerCase());
+  for (const group of [...exact.values(), ...folded.values()]) order(group);
   const seen = new Map();
-  return bones.flatMap(({ name, count }) => {
+  return bones.flatMap(({ name: word, count }) => {
+    const name = word.toLowerCase() === "root" ? joints[0].name : decodedName(word);
     const nth = seen.get(name) ?? 0;
     seen.set(name, nth + 1);
     const joint = (exact.get(name) ?? folded.get(name.toLowerCase()) ?? [])[nth];
@@ -139,7 +144,8 @@ function columnsOf(skeleton, bones) {
         found: quoted(name),
       });
     }
-    const { channels } = joints[joint];
+    // Values of a bone without degrees of freedom are kept, and move nothing.
+    const channels = joints[joint].channels.length ? joints[joint].channels : otherKinds(count);
     if (channels.length !== count) {
       throw new FileError(`values of bone ${name}`, {
         expected: `${channels.length} (${channels.join(" ")}), as the skeleton has`,
@@ -150,11 +156,18 @@ function columnsOf(skeleton, bones) {
   });
 }
 
+function otherKinds(count) {
+  return Array.from({ length: count }, (_, k) => `v${k + 1}`);
+}
+
 function plainNames(bones) {
-  return bones.flatMap(({ name, count }, place) =>
-    Array.from({ length: count }, (_, k) => {
-      const kind = place === 0 && count === 6 ? ROOT_CHANNELS[k] : `v${k + 1}`;
-      return `${name}.${kind}`;
-    }),
-  );
+  const seen = new Map();
+  return bones.flatMap(({ name: word, count }, place) => {
+    const name = decodedName(word);
+    const nth = (seen.get(name) ?? 0) + 1;
+    seen.set(name, nth);
+    const label = nth === 1 ? name : `${name}#${nth}`;
+    const kinds = place === 0 && count === 6 ? ROOT_CHANNELS : otherKinds(count);
+    return kinds.map((kind) => `${label}.${kind}`);
+  });
 }

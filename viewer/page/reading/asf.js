@@ -1,5 +1,6 @@
 import { FileError, quoted } from "./file_error.js";
 import { grouped } from "./grouped.js";
+import { decodedName, words as wordsOf } from "./names.js";
 
 const CHANNELS = ["tx", "ty", "tz", "rx", "ry", "rz", "l"];
 
@@ -13,7 +14,7 @@ const CHANNELS = ["tx", "ty", "tz", "rx", "ry", "rz", "l"];
 export function parseAsf(text) {
   const lines = [];
   text.split("\n").forEach((raw, index) => {
-    const words = raw.split("#", 1)[0].trim().split(/\s+/);
+    const words = wordsOf(raw.split("#", 1)[0]);
     if (words[0]) lines.push({ number: index + 1, key: words[0].toLowerCase(), words });
   });
   return new Parser(lines).skeleton();
@@ -47,6 +48,8 @@ class Parser {
     }
     if (bones[0]?.name !== "root") this.fail(1, "no root", "a section :root");
     this.link(bones, children);
+    const named = this.lines.find((line) => line.key === "mocapress-root");
+    bones[0].name = named?.words[1] ?? "root";
     const angleUnit = (units.get("angle") ?? "deg").toLowerCase();
     if (angleUnit !== "deg" && angleUnit !== "rad") {
       this.fail(1, "unit of angles", "deg or rad", quoted(angleUnit));
@@ -186,7 +189,7 @@ function joints(bones) {
   return order.map((i) => {
     const bone = bones[i];
     return {
-      name: bone.name,
+      name: decodedName(bone.name),
       parent: i === 0 ? -1 : place.get(bone.parent),
       offset: i === 0 ? bone.position : bones[bone.parent].vector,
       channels: bone.channels,

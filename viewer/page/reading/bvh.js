@@ -1,4 +1,5 @@
 import { FileError, quoted } from "./file_error.js";
+import { decodedName, words as wordsOf } from "./names.js";
 import { Rows } from "./rows.js";
 import { latin1, Scanner } from "./scanner.js";
 import { channelNames } from "./skeleton.js";
@@ -11,6 +12,8 @@ const KINDS = {
   yrotation: "ry",
   zrotation: "rz",
 };
+// Around a name; bytes of UTF-8 may look like other blanks.
+const BLANKS = /^[ \t\r\n\v\f]+|[ \t\r\n\v\f]+$/g;
 const MOST_JOINTS = 2 ** 16;
 
 /**
@@ -98,10 +101,12 @@ class Hierarchy {
     let waiting = null; // a joint whose brace is to come
     for (let match = piece.exec(this.text); match; match = piece.exec(this.text)) {
       const at = match.index;
-      const words = match[0]
-        .replace(/^\xef\xbb\xbf/, "")
-        .trim()
-        .split(/\s+/);
+      const text = match[0].replace(/^\xef\xbb\xbf/, "");
+      if (/^(#|\/\/|\s*$)/.test(text)) {
+        piece.lastIndex = (this.text.indexOf("\n", at) + 1 || this.text.length + 1) - 1;
+        continue;
+      }
+      const words = wordsOf(text);
       const key = words[0].toUpperCase();
       if (waiting && key !== "{") this.fail(at, `joint ${waiting.name}`, "{");
       if (key === "MOTION") {
@@ -116,12 +121,27 @@ class Hierarchy {
         this.stack.push(waiting);
         waiting = null;
       } else if (key === "ROOT" || key === "JOINT" || key === "END") {
-        waiting = this.begin(at, key, words.slice(1).join(" "));
+        waiting = this.begin(at, key, decodedName(text.slice(key.length).replace(BLANKS, "")));
       } else {
+        this.moreWords(piece, key, words);
         this.inside(at, key, words.slice(1));
       }
     }
     return this.fail(this.text.length, "no motion", "MOTION");
+  }
+
+  /** Take the words of the next lines, where OFFSET or CHANNELS go on there. */
+  moreWords(piece, key, words) {
+    const needed = { OFFSET: 4, CHANNELS: Math.min(Number(words[1]), 99) + 2 }[key] ?? 0;
+    while (words.length < needed) {
+      const begin = piece.lastIndex;
+      const next = piece.exec(this.text);
+      if (!next || next[0] === "{" || next[0] === "}") {
+        piece.lastIndex = begin;
+        return;
+      }
+      words.push(...wordsOf(next[0]));
+    }
   }
 
   inside(at, key, words) {

@@ -10,9 +10,17 @@ from numpy.typing import NDArray
 from mocapress.codecs.app.coding import Coding
 from mocapress.codecs.app.measures import average_prediction_error
 from mocapress.codecs.app.tables import ALPHA_TABLES
-from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
+from mocapress.codecs.contract import (
+    NO_OTHERS,
+    Capabilities,
+    Chunk,
+    Codec,
+    Encoded,
+    Model,
+    Others,
+)
 from mocapress.errors import ParameterError
-from mocapress.motion import Clip, Column
+from mocapress.motion import Clip, Column, Skeleton, Stream
 
 _MOST_FRAMES = 1 << 20
 _DOUBLE_MANTISSA = 53
@@ -27,7 +35,7 @@ class App(Codec):
     """
 
     id: ClassVar[str] = "app"
-    lossless: ClassVar[bool] = True
+    can: ClassVar[Capabilities] = Capabilities(lossless=True, measured=True)
 
     t: int = 15
     """Frames per cluster, which share one alpha per column."""
@@ -58,9 +66,16 @@ class App(Codec):
         """Settings of the compiled coder."""
         return Coding(ALPHA_TABLES[self.table], self.t, self.mantissa_limit, self.chunk)
 
-    def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:  # noqa: ARG002
-        """Code a clip; ``(F, C)`` values, any float64 including NaN, infinities and -0."""
-        return self.coding.encode(clip)
+    def encode(
+        self,
+        stream: Stream,
+        *,
+        skeleton: Skeleton | None = None,
+        model: Model | None = None,
+        others: Others = NO_OTHERS,
+    ) -> Encoded:
+        """Code a stream; ``(F, C)`` values, any float64 including NaN, infinities and -0."""
+        return self.coding.encode(stream, skeleton)
 
     def measure(self, clip: Clip, encoded: Encoded, raw_bytes: int) -> dict[str, float]:
         """Give MCR, TCR (Eqs. 11 and 12) and APE (Eq. 13) of a coded clip."""
@@ -78,7 +93,9 @@ class App(Codec):
         chunks: Sequence[Chunk],
         columns: Sequence[Column],
         *,
-        model: Model | None = None,  # noqa: ARG002
+        model: Model | None = None,
+        others: Others = NO_OTHERS,
+        stop: int | None = None,
     ) -> NDArray[np.float64]:
         """Decode any chunks, one after the other: (sum of their frames, C) float64.
 
@@ -88,4 +105,4 @@ class App(Codec):
             When header or payload are not what ``encode`` makes with these parameters.
 
         """
-        return self.coding.decode(header, chunks, columns)
+        return self.coding.decode(header, chunks, columns)[:stop]

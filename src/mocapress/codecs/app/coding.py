@@ -11,7 +11,7 @@ from mocapress.codecs.app.header import pack_header, unpack_header
 from mocapress.codecs.app.parents import parent_columns
 from mocapress.codecs.contract import Chunk, Encoded
 from mocapress.errors import CorruptError
-from mocapress.motion import Clip, Column
+from mocapress.motion import Column, Skeleton, Stream
 from mocapress.motion.number_format import NumberKind
 
 _LINES = {
@@ -45,20 +45,20 @@ class Coding:
         """Frames of every chunk but the last."""
         return -(-self.chunk // self.t) * self.t
 
-    def encode(self, clip: Clip) -> Encoded:
-        """Code a clip, (F, C) float64."""
-        values = np.ascontiguousarray(clip.values, dtype=np.float64)
-        parents = parent_columns(clip)
-        plan = make_plan(clip.columns, parents, [0] * clip.channels)
+    def encode(self, stream: Stream, skeleton: Skeleton | None) -> Encoded:
+        """Code a stream, (F, C) float64."""
+        values = np.ascontiguousarray(stream.values, dtype=np.float64)
+        parents = parent_columns(stream.columns, skeleton)
+        plan = make_plan(stream.columns, parents, [0] * stream.channels)
         precisions = _core.app_precisions(values, plan)
         plan[:, 1] = precisions
         table = np.array(self.alphas, dtype=np.float64)
         chunks = []
-        for first in range(0, clip.frames, self.frames_per_chunk):
+        for first in range(0, stream.frames, self.frames_per_chunk):
             rows = values[first : first + self.frames_per_chunk]
             payload = _core.app_encode(rows, plan, table, self.t, self.mantissa_limit)
             chunks.append(Chunk(first, len(rows), payload))
-        index_bytes = self.index_bytes(chunks, clip.channels)
+        index_bytes = self.index_bytes(chunks, stream.channels)
         return Encoded(pack_header(parents, precisions), tuple(chunks), index_bytes)
 
     def decode(

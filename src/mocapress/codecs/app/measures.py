@@ -35,7 +35,7 @@ def ideal_alphas(clip: Clip, t: int = 15) -> NDArray[np.float64]:
     (ceil(F / t), C) float64. NaN for columns without a parent; 0 where the parent does not move.
 
     """
-    parents = parent_columns(clip)
+    parents = parent_columns(clip.columns, clip.skeleton)
     plan = make_plan(clip.columns, parents, [0] * clip.channels)
     alphas = _core.app_ideal_alphas(np.ascontiguousarray(clip.values), plan, t)
     found = np.array(alphas, dtype=np.float64).reshape(-(-clip.frames // t), clip.channels)
@@ -51,7 +51,7 @@ def average_prediction_error(clip: Clip, codec: Predictor) -> float:
     """
     coding = codec.coding
     values = np.ascontiguousarray(clip.values)
-    plan = make_plan(clip.columns, parent_columns(clip), [0] * clip.channels)
+    plan = make_plan(clip.columns, parent_columns(clip.columns, clip.skeleton), [0] * clip.channels)
     plan[:, 1] = _core.app_precisions(values, plan)
     table = np.array(coding.alphas, dtype=np.float64)
     error = 0.0

@@ -9,7 +9,16 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
+from mocapress.codecs.contract import (
+    NO_OTHERS,
+    Bound,
+    Capabilities,
+    Chunk,
+    Codec,
+    Encoded,
+    Model,
+    Others,
+)
 from mocapress.codecs.diffma import allocation
 from mocapress.codecs.diffma.coding import MOST_BITS, MOST_ORDER, MOST_WINDOW, Coding, Plan
 from mocapress.codecs.diffma.payload import (
@@ -18,8 +27,9 @@ from mocapress.codecs.diffma.payload import (
     unpack_header,
     unpack_payload,
 )
-from mocapress.errors import CorruptError, ParameterError
-from mocapress.motion import Clip, Column
+from mocapress.errors import CorruptError, ParameterError, VerificationError
+from mocapress.motion import Clip, Column, Skeleton, Stream
+from mocapress.motion.clip import decimal_seconds
 
 _MOST_FRAMES = 1 << 20
 
@@ -29,7 +39,9 @@ class DiffMA(Codec):
     """DiffMA, lossy: as published unless ``max_error``, ``order`` or ``per`` say otherwise."""
 
     id: ClassVar[str] = "diffma"
-    lossless: ClassVar[bool] = False
+    can: ClassVar[Capabilities] = Capabilities(
+        lossless=False, bounds=frozenset({Bound.MEAN, Bound.LARGEST}), document=True
+    )
 
     bits: int = 6
     """n: a step is coded as one of 2^n sizes."""
@@ -87,13 +99,13 @@ class DiffMA(Codec):
         spare = self.per == "channel"
         return Coding(self.bits, self.window, self.tolerance, self.round_offset, spare)
 
-    def plan(self, clip: Clip) -> tuple[Plan, ...]:
-        """Choose bound and order of each channel of a clip, (F, C)."""
+    def plan(self, stream: Stream) -> tuple[Plan, ...]:
+        """Choose bound and order of each channel of a stream, (F, C)."""
         order = 0 if self.order == "auto" else int(self.order)
         plans = tuple(
-            Plan(self.bound, order, self._error_of(column.name)) for column in clip.columns
+            Plan(self.bound, order, self._error_of(column.name)) for column in stream.columns
         )
-        channels, coding = by_channel(clip.values), self.coding
+        channels, coding = by_channel(stream.values), self.coding
         if not channels.size:
             return plans
         if self.per == "channel":
@@ -106,14 +118,21 @@ class DiffMA(Codec):
             plans = allocation.with_orders(coding, channels, plans)
         return plans
 
-    def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:  # noqa: ARG002
-        """Code a clip; ``(F, C)`` values, any float64; NaN and infinities stay as they are."""
+    def encode(
+        self,
+        stream: Stream,
+        *,
+        skeleton: Skeleton | None = None,
+        model: Model | None = None,
+        others: Others = NO_OTHERS,
+    ) -> Encoded:
+        """Code a stream; ``(F, C)`` values, any float64; NaN and infinities stay as they are."""
         if self.levels:
             raise ParameterError("diffma:levels are for JSON", expected="a .diffma.json as output")
-        plans = self.plan(clip)
+        plans = self.plan(stream)
         chunks = []
-        for first in range(0, clip.frames, self.chunk):
-            rows = clip.values[first : first + self.chunk]
+        for first in range(0, stream.frames, self.chunk):
+            rows = stream.values[first : first + self.chunk]
             records = self.coding.encode(by_channel(rows), plans)
             chunks.append(Chunk(first, len(rows), pack_payload(records)))
         return Encoded(pack_header(plans), tuple(chunks))
@@ -124,7 +143,9 @@ class DiffMA(Codec):
         chunks: Sequence[Chunk],
         columns: Sequence[Column],
         *,
-        model: Model | None = None,  # noqa: ARG002
+        model: Model | None = None,
+        others: Others = NO_OTHERS,
+        stop: int | None = None,
     ) -> NDArray[np.float64]:
         """Decode any chunks, one after the other: (sum of their frames, C) float64.
 
@@ -148,11 +169,52 @@ class DiffMA(Codec):
                 values.append(self.coding.decode(records, plans, chunk.frames).T)
             except ValueError as error:
                 raise CorruptError(f"DiffMA chunk from frame {chunk.first}: {error}") from error
-        return np.ascontiguousarray(np.concatenate([np.empty((0, len(columns))), *values]))
+        return np.ascontiguousarray(np.concatenate([np.empty((0, len(columns))), *values])[:stop])
 
     def largest_errors(self, columns: Sequence[Column]) -> list[float]:
         """Give the error up to which each column may come back; infinite where none was asked."""
         return [self._error_of(column.name) for column in columns]
+
+    def document(self, clip: Clip, layout: bytes = b"") -> bytes:
+        """Code a clip as DiffMA JSON, which was read and decoded again.
+
+        Raises
+        ------
+        VerificationError
+            When what was decoded is not what was encoded, or breaks a bound.
+
+        """
+        # The reader of documents is not needed to make or read a .mcz.
+        from mocapress.codecs.diffma.document import Document, Level, read_document
+
+        plans, channels = self.plan(clip.main), by_channel(clip.values)
+        levels = []
+        for bound in self.level_bounds:
+            level = self.level(bound)
+            records = level.coding.encode(channels, level.plan(clip.main))
+            levels.append(Level(bound, tuple(records)))
+        document = Document(
+            tuple(column.name for column in clip.columns),
+            self.coding,
+            plans,
+            tuple(self.coding.encode(channels, plans)),
+            clip.frames,
+            tuple(levels),
+            clip.skeleton,
+            tuple((column.joint, column.kind) for column in clip.columns),
+            None if clip.frame_time is None else decimal_seconds(clip.frame_time),
+            layout,
+        )
+        text = document.to_json()
+        decoded = read_document(text).decode()
+        limits = np.array([plan.max_error for plan in plans])
+        same = (
+            by_channel(decoded).tobytes()
+            == self.coding.decode(document.records, plans, clip.frames).tobytes()
+        )
+        if not same or (np.abs(decoded - clip.values) > limits).any():
+            raise VerificationError("DiffMA JSON does not give back what was encoded")
+        return text
 
     def level(self, bound: float) -> "DiffMA":
         """Give the codec of a level of detail: one bound, and nothing to choose."""

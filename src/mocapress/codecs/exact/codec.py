@@ -8,14 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
-from mocapress.codecs.contract import Chunk, Codec, Encoded, Model
+from mocapress.codecs.contract import (
+    NO_OTHERS,
+    Capabilities,
+    Chunk,
+    Codec,
+    Encoded,
+    Model,
+    Others,
+)
 from mocapress.codecs.exact.coupling_search import find_couplings
 from mocapress.codecs.exact.header import pack_header, unpack_header
 from mocapress.codecs.exact.roles import Role, Roles, find_roles
-from mocapress.codecs.exact.skeletons import is_known
+from mocapress.codecs.exact.skeletons import skeleton_of
 from mocapress.codecs.exact.start import Learned, Start, model_of, start_of
 from mocapress.errors import CorruptError, ParameterError
-from mocapress.motion import Clip, Column
+from mocapress.motion import Column, Skeleton, Stream
 
 _MOST_FRAMES = 1 << 20
 _FAST_LEVELS = 2
@@ -29,11 +37,11 @@ class Exact(Codec):
     """Prediction by several models that learn as they go, and coding on the decimal grid."""
 
     id: ClassVar[str] = "exact"
-    lossless: ClassVar[bool] = True
+    can: ClassVar[Capabilities] = Capabilities(lossless=True, levels=True, trains=True)
 
     level: int = 6
     """1, the fastest, to 9, the strongest."""
-    chunk: int = 2048
+    chunk: int = 512
     """Frames that are decoded together; every chunk learns anew."""
 
     def __post_init__(self) -> None:
@@ -42,22 +50,29 @@ class Exact(Codec):
             if not isinstance(value, int) or not 1 <= value <= most:
                 raise ParameterError(f"exact:{name}", expected=f"1 to {most}", found=repr(value))
 
-    def train(self, clips: Iterable[Clip]) -> Model:
-        """Learn from clips what to begin with: each clip is coded as if it went on from the last.
+    def train(self, streams: Iterable[Stream]) -> Model:
+        """Learn what to begin with: each stream is coded as if it went on from the last.
 
-        A model is of use for clips of the same columns, coded at the same level.
+        A model is of use for streams of the same columns, coded at the same level.
         """
         start = Start()
-        for clip in clips:
-            if clip.frames == 0:
+        for stream in streams:
+            if stream.frames == 0:
                 continue
-            coder = _Coder(_roles(clip.values, clip.columns, self.level), self.level, start)
-            _, learned = coder.encode(clip.values, learn=True)
+            coder = _Coder(_roles(stream.values, stream.columns, self.level), self.level, start)
+            _, learned = coder.encode(stream.values, learn=True)
             start.take(coder.columns, learned)
         return model_of(self.id, start)
 
-    def encode(self, clip: Clip, *, model: Model | None = None) -> Encoded:
-        """Code a clip; ``(F, C)`` values, any float64 including NaN, infinities and -0.
+    def encode(
+        self,
+        stream: Stream,
+        *,
+        skeleton: Skeleton | None = None,
+        model: Model | None = None,
+        others: Others = NO_OTHERS,
+    ) -> Encoded:
+        """Code a stream; ``(F, C)`` values, any float64 including NaN, infinities and -0.
 
         Raises
         ------
@@ -65,13 +80,13 @@ class Exact(Codec):
             When the model's payload is not one that ``train`` makes.
 
         """
-        if clip.frames == 0:
+        if stream.frames == 0:
             return Encoded(b"", ())
-        roles = _roles(clip.values, clip.columns, self.level)
+        roles = _roles(stream.values, stream.columns, self.level)
         coder = _Coder(roles, self.level, start_of(model))
         chunks = []
-        for first in range(0, clip.frames, self.chunk):
-            rows = clip.values[first : first + self.chunk]
+        for first in range(0, stream.frames, self.chunk):
+            rows = stream.values[first : first + self.chunk]
             chunks.append(Chunk(first, len(rows), coder.encode(rows)[0]))
         return Encoded(pack_header(roles, has_model=model is not None), tuple(chunks))
 
@@ -82,6 +97,7 @@ class Exact(Codec):
         columns: Sequence[Column],
         *,
         model: Model | None = None,
+        others: Others = NO_OTHERS,
         stop: int | None = None,
     ) -> NDArray[np.float64]:
         """Decode any chunks, one after the other: (sum of their frames, C) float64.
@@ -134,7 +150,7 @@ def _roles(values: NDArray[np.float64], columns: Sequence[Column], level: int) -
     return find_roles(
         values,
         lambda predicted, lines: find_couplings(values, columns, predicted, lines),
-        places=is_known(columns),
+        skeleton=skeleton_of(columns),
     )
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from mocapress import _core
 from mocapress.codecs.exact.coupling import Coupling, CouplingKind
 from mocapress.codecs.exact.joints import find_joints
-from mocapress.codecs.exact.skeletons import axes, is_known
+from mocapress.codecs.exact.skeletons import axes, skeleton_of
 from mocapress.motion import Column
 
 _MOST_SOURCES = 6
@@ -43,7 +43,7 @@ def find_couplings(
     The known skeleton has its laws and no others.
     """
     sample = values[:: len(values) // _SAMPLES + 1]
-    known = is_known(columns)
+    known = skeleton_of(columns)
     stretches = _stretches(values[:0] if known else values)
     joints = [
         list(group)

@@ -10,7 +10,7 @@ from mocapress.codecs.exact.coupling import (
     write_couplings,
 )
 from mocapress.codecs.exact.roles import EXPONENT_STEP, MOST_EXPONENT, Role, Roles
-from mocapress.codecs.exact.skeletons import OWN_COUPLINGS, PLACES
+from mocapress.codecs.exact.skeletons import CHANNELS, CMU, NONE, OWN_COUPLINGS
 from mocapress.codecs.palette import (
     indexed,
     read_indices,
@@ -27,9 +27,9 @@ _TURNS = 3
 
 def pack_header(roles: Roles, *, has_model: bool) -> bytes:
     """Make the header of a clip with these roles, coded with a model or without."""
-    own = roles.places and set(roles.couplings) <= set(OWN_COUPLINGS)
+    own = roles.skeleton != NONE and set(roles.couplings) <= set(OWN_COUPLINGS)
     writer = Writer()
-    writer.integer(_MODEL * has_model + _OWN_COUPLINGS * own + _SKELETON * roles.places)
+    writer.integer(_MODEL * has_model + _OWN_COUPLINGS * own + _SKELETON * roles.skeleton)
     told = zip(roles.roles, roles.turns, strict=True)
     write_palette(writer, [role + len(Role) * turns for role, turns in told])
     lines = [roles.lines[c] for c in _moving(roles.roles)]
@@ -56,9 +56,9 @@ def unpack_header(header: bytes, columns: int) -> tuple[Roles, bool]:
 
     """
     reader = Reader(header, "exact header")
-    flags = reader.integer(_MODEL + _OWN_COUPLINGS + _SKELETON)
-    places, own = bool(flags & _SKELETON), bool(flags & _OWN_COUPLINGS)
-    if (places and columns != PLACES) or (own and not places):
+    flags = reader.integer(_MODEL + _OWN_COUPLINGS + _SKELETON * CMU)
+    skeleton, own = flags // _SKELETON, bool(flags & _OWN_COUPLINGS)
+    if CHANNELS.get(skeleton, columns) != columns or (own and skeleton == NONE):
         raise reader.fail("the channels of a skeleton that has others")
     told = read_palette(reader, columns, _TURNS * len(Role) - 1)
     roles = tuple(Role(code % len(Role)) for code in told)
@@ -84,7 +84,7 @@ def unpack_header(header: bytes, columns: int) -> tuple[Roles, bool]:
         tuple(exponents),
         tuple(code // len(Role) for code in told),
         tuple(couplings),
-        places,
+        skeleton,
         constants,
     )
     return made, bool(flags & _MODEL)

@@ -45,8 +45,8 @@ class Roles:
     turns: tuple[int, ...]
     """Per column: 1 or 2 for degrees from -180 or 0 on that jump by whole turns, else 0."""
     couplings: tuple[Coupling, ...]
-    places: bool
-    """Whether the columns are the channels of the skeleton that the compiled coder knows."""
+    skeleton: int
+    """The known skeleton whose channels the columns are, of skeletons.py, or NONE."""
     constants: tuple[float, ...]
     """Values of the constant columns."""
 
@@ -83,7 +83,7 @@ class Roles:
                 self.roles[c] is Role.NOISE,
                 self.exponents[c],
                 self.turns[c],
-                c if self.places else -1,
+                c if self.skeleton else -1,
             )
             for c in columns
         ]
@@ -94,7 +94,7 @@ def find_roles(
     values: NDArray[np.float64],
     couple: Callable[[list[int], Sequence[tuple[int, int]]], list[Coupling]],
     *,
-    places: bool = False,
+    skeleton: int = 0,
 ) -> Roles:
     """Find the role of each column of (F, C) values; ``couple`` finds couplings of columns."""
     bits = values.view(np.uint64)
@@ -119,7 +119,7 @@ def find_roles(
         tuple(_exponents(values, roles)),
         tuple(_turns(values, roles)),
         tuple(arrange(predicted, couple(predicted, lines))[1]),
-        places,
+        skeleton,
         tuple(values[0, constant].tolist()),
     )
 

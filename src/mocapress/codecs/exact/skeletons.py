@@ -1,7 +1,7 @@
 """Which clips move the skeleton whose geometry the compiled coder knows.
 
 Nothing is taken from names: what counts is which channels the joints have, one after the other.
-core/exact/kinematics_tables.hpp has the skeleton, that of the CMU motion capture database.
+core/exact/data has them, named by numbers: 1 is that of the CMU motion capture database.
 """
 
 from collections.abc import Sequence
@@ -14,8 +14,10 @@ _ARM = ("ry rz", "rx ry rz", "rx", "ry", "rx rz", "rx", "rx rz")
 _LEG = ("rx ry rz", "rx", "rx rz", "rx")
 _JOINTS = ("tx ty tz rx ry rz", *("rx ry rz",) * 6, *_ARM, *_ARM, *_LEG, *_LEG)
 
-PLACES = sum(len(joint.split()) for joint in _JOINTS)
-"""Number of the skeleton's channels."""
+NONE, CMU = 0, 1
+
+CHANNELS = {CMU: sum(len(joint.split()) for joint in _JOINTS)}
+"""Number of channels of each skeleton."""
 
 OWN_COUPLINGS = (
     Coupling(CouplingKind.SPINE, (6, 7, 8, 9, 10, 11), (13, 12, 14)),
@@ -38,13 +40,13 @@ def axes(joint: Sequence[Column]) -> str:
     return "".join(column.kind[-1:] for column in joint)
 
 
-def is_known(columns: Sequence[Column]) -> bool:
-    """Tell whether columns are the known skeleton's channels, in its order, angles in degrees.
+def skeleton_of(columns: Sequence[Column]) -> int:
+    """Give the skeleton whose channels the columns are, in its order, angles in degrees, or NONE.
 
     Of an AMC without its skeleton, how many channels the joints have must do.
     """
     joints = [list(group) for _, group in groupby(columns, lambda column: column.joint)]
-    return (
+    is_cmu = (
         len(joints) == len(_JOINTS)
         and all(
             kinds == " ".join(column.kind for column in joint)
@@ -53,3 +55,4 @@ def is_known(columns: Sequence[Column]) -> bool:
         )
         and all(column.unit == "deg" for column in columns if column.kind[:1] == "r")
     )
+    return CMU if is_cmu else NONE
