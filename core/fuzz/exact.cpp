@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <span>
 #include <vector>
 
 #include "exact/codec.hpp"
@@ -105,6 +106,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Bytes payload = exact::encode(values.data(), frames, clip);
   if (!decodes(payload, decoded, frames, clip)) std::abort();
   if (!same_bits(values, decoded)) std::abort();
+  std::vector<double> first(frames / 2 * count);
+  exact::decode(payload, first.data(), frames / 2, clip, false);
+  if (!same_bits(std::span(values).first(first.size()), first)) std::abort();
   if (payload.empty()) return 0;
   const std::size_t place = at * payload.size() / 256;
   if (frames > 0 && decodes(ByteView(payload).first(place), decoded, frames, clip) && level <= 2) {
