@@ -10,12 +10,17 @@ sources := $(wildcard core/*/*.cpp core/*/*.hpp)
 headers := $(filter %.hpp,$(sources)) $(wildcard core/exact/data/*)
 kernels := $(filter-out core/python/% core/check/% core/fuzz/%,$(filter %.cpp,$(sources)))
 
-.PHONY: demo test check tests test-js browser sanitize fuzz bench wheel clean
+.PHONY: demo test long check tests test-js browser sanitize fuzz bench wheel clean
 
 demo: $(VENV)/.installed
 	@PYTHONPATH=benchmarks $(BIN)/python -m mocapress_bench demo
 
 test: check sanitize test-js tests
+
+# What takes too long for every test run: 1,000 kills at random moments, then one before every call.
+long: $(VENV)/.built corpus
+	$(BIN)/python tests/campaigns/kills.py --runs 1000 \
+	    $(if $(wildcard corpus/.version),--corpus corpus) --every-call
 
 check: $(VENV)/.built
 	$(BIN)/ruff format --check .
