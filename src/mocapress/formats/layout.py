@@ -105,7 +105,7 @@ class Layout:
 
     def first_row(self) -> bytes:
         """Give the header and a first row whose numbers are zeros: enough to read the columns."""
-        template = self.templates[0]
+        template = max(self.templates, key=lambda template: len(template.columns))
         one = Layout(
             self.format,
             self.header,
