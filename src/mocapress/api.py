@@ -1,7 +1,6 @@
 """The Python interface: ``import mocapress as mp``."""
 
 import hashlib
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +17,7 @@ from mocapress.motion.convert import with_rate
 from mocapress.restore import chunks_of, decompress, load
 from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, Named, Source
 from mocapress.source import read as read_motion
-from mocapress.storage import write_whole
+from mocapress.storage import ExistsError, write_all, write_whole
 
 __all__ = ["Compressed", "compress", "compress_source", "decompress", "load", "read", "write"]
 
@@ -258,15 +257,34 @@ def write(
     if of is None:
         known = formats.names(formats.writable())
         raise UnsupportedError("no format for clips", expected=known, found=repr(path.suffix))
-    (_, data), *beside = printed(with_rate(clip, fps, needed=of.timed), of).items()
-    for suffix, more in beside:
-        write_whole(path.with_suffix(suffix), more, force=force)
-    write_whole(path, data, force=force)
+    write_all(printed(with_rate(clip, fps, needed=of.timed), of, path), force=force)
 
 
-def printed(clip: Clip, of: Format) -> Mapping[str, bytes]:
-    """Print a clip in a format: contents by suffix, the file itself first."""
+def printed(clip: Clip, of: Format, path: Path) -> dict[Path, bytes]:
+    """Print a clip in a format: contents by path, of the file itself first.
+
+    Raises
+    ------
+    ExistsError
+        When something else lies where the skeleton would go, and no file of this name beside it:
+        then it is not a skeleton that came with this file, but one of others.
+    UnsupportedError
+        When the clip lacks what the format needs.
+
+    """
     if of.write is None:
         known = formats.names(formats.writable())
         raise UnsupportedError("no format for clips", expected=known, found=of.name)
-    return of.write(of.fit(clip))
+    (_, data), *companions = of.write(of.fit(clip)).items()
+    files = {path: data}
+    for suffix, contents in companions:
+        place = path.with_suffix(suffix)
+        if not place.exists() or path.exists():
+            files[place] = contents
+        elif place.read_bytes() != contents:
+            raise ExistsError(
+                f"file exists and did not come with {path.name}",
+                file=str(place),
+                expected="another name for the output, or this file elsewhere",
+            )
+    return files

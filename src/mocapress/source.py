@@ -73,7 +73,7 @@ class Source:
 
     def __init__(self, named: Named, name: str | None = None) -> None:
         self.path = Path(named) if isinstance(named, str | Path) else None
-        self.name = name if name is not None else str(self.path or "")
+        self.name = _name(named) if name is None else name
         self.used: Beside | None = None
         """The skeleton that was used, of those that lie beside the file or in it."""
         self.warnings: list[MotionWarning] = []
@@ -214,7 +214,7 @@ class Source:
         except (FormatError, OSError) as error:
             if certain:
                 raise
-            self._left_away("broken-skeleton", error, beside)
+            self._left_away("broken-skeleton", "cannot be read", error, beside)
             return make(None)
         try:
             made = make(skeleton)
@@ -223,7 +223,7 @@ class Source:
             error.file, error.line, error.offset = beside.file, None, None
             if certain:
                 raise error from None
-            self._left_away("foreign-skeleton", error, beside)
+            self._left_away("foreign-skeleton", "is of another figure", error, beside)
             return made
         self.used = beside
         return made
@@ -241,10 +241,13 @@ class Source:
         path, how = found
         return Beside(str(path), how, lambda: Source(path).read())
 
-    def _left_away(self, name: str, error: FormatError | OSError, beside: Beside) -> None:
+    def _left_away(
+        self, name: str, fault: str, error: FormatError | OSError, beside: Beside
+    ) -> None:
         if isinstance(error, OSError):
             error = FormatError(error.strerror or str(error), file=beside.file)
-        error.what += "; the skeleton is left away"
+        without = f"so {Path(self.name).name} is taken without a skeleton"
+        error.what = f"{fault}, {without}: {error.what}"
         self.warn(name, error)
 
     def accept(self, problems: Sequence[Problem], *, strict: bool = True) -> None:
@@ -274,9 +277,9 @@ class Source:
         """Warn where the skeleton that was used was merely the only one in the folder."""
         if self.used is not None and self.used.found == ONLY_ONE:
             fact = MocapressError(
-                "the only skeleton in the folder was taken; it may be another's",
+                f"taken as the skeleton of {Path(self.name).name} because it is the only one in "
+                "the folder; that of another figure gives wrong bones",
                 file=self.used.file,
-                expected=f"one named as {Path(self.name).name}, or one given",
             )
             self.warn("guessed-skeleton", fact)
 
@@ -352,6 +355,14 @@ def read(source: Source, asf_path: str | Path | None = None, *, strict: bool = T
     source.accept(parts.problems, strict=strict)
     source.warn_of_guess()
     return parts.clip
+
+
+def _name(named: Named) -> str:
+    if isinstance(named, str | Path):
+        return str(named)
+    name = getattr(named, "name", "")
+    # That of a standard stream, "<stdin>", is none, nor is a descriptor's number.
+    return name if isinstance(name, str) and not name.startswith("<") else ""
 
 
 def _drained(stream: BinaryIO) -> bytes:

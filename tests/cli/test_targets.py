@@ -151,14 +151,12 @@ def test_the_skeleton_that_was_used_is_not_replaced(
     for name in ("cmu_01_01.amc", "cmu_01_01.asf"):
         shutil.copy(samples / name, tmp_path)
     assert mocapress("compress", "cmu_01_01.amc", "--codec", "app").exit_code == 0
-    Path("cmu_01_01.amc").unlink()
-    before = Path("cmu_01_01.asf").read_bytes()
+    before = [Path(name).read_bytes() for name in ("cmu_01_01.amc", "cmu_01_01.asf")]
     words = ("convert", "cmu_01_01.amc.mcz", "--to", "amc", "--force")
     result = mocapress(*words)
     assert result.exit_code == 2
     assert "would replace the skeleton" in result.stderr
-    assert Path("cmu_01_01.asf").read_bytes() == before
-    assert not Path("cmu_01_01.amc").exists()
+    assert [Path(name).read_bytes() for name in ("cmu_01_01.amc", "cmu_01_01.asf")] == before
     assert mocapress(*words, "-o", "new/").exit_code == 0
 
 

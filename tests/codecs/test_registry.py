@@ -1,6 +1,8 @@
-"""Other packages add codecs, and codecs may refer to chunks of other clips."""
+"""Other packages add codecs, as the guide shows, and codecs may refer to chunks of other clips."""
 
+import re
 import sys
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,54 +35,8 @@ from mocapress.motion import Column, Skeleton, Stream
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 
-PACKAGE = '''
-"""A codec of another package: values as they are, deflated."""
-
-import zlib
-from dataclasses import dataclass
-from typing import ClassVar
-
-import numpy as np
-
-from mocapress.codecs import Capabilities, Chunk, Codec, Encoded
-from mocapress.errors import CorruptError
-
-
-@dataclass(frozen=True, slots=True)
-class Deflated(Codec):
-    id: ClassVar[str] = "deflated"
-    can: ClassVar[Capabilities] = Capabilities(lossless=True, levels=True)
-
-    level: int = 6
-    chunk: int = 400
-
-    def encode(self, stream, *, skeleton=None, model=None, others=None):
-        chunks = []
-        for first in range(0, stream.frames, self.chunk):
-            rows = stream.values[first : first + self.chunk]
-            chunks.append(Chunk(first, len(rows), zlib.compress(rows.tobytes(), self.level)))
-        return Encoded(b"", tuple(chunks))
-
-    def decode(self, header, chunks, columns, *, model=None, others=None, stop=None):
-        if header:
-            raise CorruptError("a header where none is")
-        return np.concatenate(
-            [np.empty((0, len(columns))), *(self._rows(c, len(columns)) for c in chunks)]
-        )[:stop]
-
-    def _rows(self, chunk, columns):
-        size = 8 * columns * chunk.frames
-        if not 0 < chunk.frames <= self.chunk:
-            raise CorruptError("frames")
-        inflate = zlib.decompressobj()
-        try:
-            data = inflate.decompress(chunk.payload, size + 1)
-        except zlib.error as error:
-            raise CorruptError(str(error)) from error
-        if len(data) != size or not inflate.eof or inflate.unused_data:
-            raise CorruptError("not so many values")
-        return np.frombuffer(data).reshape(chunk.frames, columns)
-'''
+GUIDE = (Path(__file__).parents[2] / "docs/guide/codecs.md").read_text()
+((METADATA, PACKAGE),) = re.findall(r"```toml\n(.*?)```.*?```python\n(.*?)```", GUIDE, re.DOTALL)
 
 
 @pytest.fixture
@@ -93,10 +49,11 @@ def other_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     (metadata / "METADATA").write_text(
         "Metadata-Version: 2.1\nName: deflated-codec\nVersion: 1.0\n"
     )
-    (metadata / "entry_points.txt").write_text(
-        "[mocapress.codecs]\ndeflated = deflated_codec:Deflated\nbroken = no_such_module:Codec\n"
-        "stranger = pathlib:Path\n"
-    )
+    groups = tomllib.loads(METADATA)["project"]["entry-points"]
+    assert list(groups) == [codecs.GROUP]
+    entries = groups[codecs.GROUP] | {"broken": "no_such_module:Codec", "stranger": "pathlib:Path"}
+    lines = [f"[{codecs.GROUP}]", *(f"{name} = {value}" for name, value in entries.items())]
+    (metadata / "entry_points.txt").write_text("\n".join(lines))
     monkeypatch.syspath_prepend(str(site))
     monkeypatch.delitem(sys.modules, "deflated_codec", raising=False)
     return "deflated"

@@ -82,11 +82,10 @@ def convert(
         source = job.opened()
         clip = _read(source, asf, places_for(job, given), strict=not lenient)
         clip = with_rate(clip, fps, needed=made.timed)
-        (_, data), *beside = api.printed(clip, made).items()
-        job.outputs[job.target] = data
-        if job.target != STREAM:
-            job.outputs |= {job.target.with_suffix(suffix): more for suffix, more in beside}
-            _keep_skeleton(job, source)
+        job.outputs |= api.printed(clip, made, job.target)
+        if job.target == STREAM:
+            job.outputs = {STREAM: job.outputs[STREAM]}
+        _keep_skeleton(job, source)
         return {
             "output": str(job.target),
             "frames": clip.frames,
