@@ -7,6 +7,7 @@ import pytest
 
 import mocapress as mp
 from mocapress.api import Opened
+from mocapress.container import MczWriter
 from mocapress.source import Source
 
 AMC = b":FULLY-SPECIFIED\n:DEGREES\n" + b"".join(
@@ -118,9 +119,8 @@ def test_without_its_layout_the_numbers_are_left(blob: bytes) -> None:
 
 def test_values_that_are_not_those_that_were_coded_are_found(blob: bytes) -> None:
     """A digest that does not fit what is decoded, behind right checksums, costs its chunk."""
-    from mocapress.container import MczWriter
-
-    opened, parts = Opened(Source(blob)), []
+    opened = Opened(Source(blob))
+    parts: list[bytes] = []
     writer = MczWriter(parts.append)
     assert opened.mcz.head is not None
     assert opened.mcz.original is not None
