@@ -185,8 +185,9 @@ def check_second_run(scenario: Scenario, inputs: Contents) -> None:
 def at_random(
     planned: list[Scenario], runs: int, inputs: Contents, choice: random.Random
 ) -> Counter[str]:
-    """Kill commands at moments that are spread evenly over the time that they take."""
+    """Kill commands at random: half at any moment of their work, half once they are writing."""
     states: Counter[str] = Counter()
+    seconds = {scenario.name: scenario.seconds for scenario in planned}
     kills = 0
     for i in count():
         if kills == runs:
@@ -194,15 +195,29 @@ def at_random(
         scenario = planned[i % len(planned)]
         scenario.prepare()
         child = fork(scenario.run)
-        time.sleep(choice.uniform(0, scenario.seconds))
+        if i // len(planned) % 2:
+            wait_for_writing(child)
+            time.sleep(choice.uniform(0, seconds[scenario.name] / 4))
+        else:
+            time.sleep(choice.uniform(0, seconds[scenario.name]))
         os.kill(child, signal.SIGKILL)
         if ended(child):
             kills += 1
             states[check_killed(scenario, inputs)] += 1
         else:
             states["ended before the kill"] += 1
+        start = time.monotonic()
         check_second_run(scenario, inputs)
+        if scenario.force:  # which takes as long as the first run would; loads change
+            seconds[scenario.name] = time.monotonic() - start
     return states
+
+
+def wait_for_writing(child: int) -> None:
+    """Wait for the first temporary file, or the end of the process."""
+    while not any(Path("out").glob(".mocapress-*")):
+        if os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT):
+            return
 
 
 def at_every_call(planned: Iterable[Scenario], inputs: Contents) -> Counter[str]:
