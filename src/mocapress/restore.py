@@ -116,7 +116,7 @@ def load_source(
         contents = decompress(source)
         of = formats.recognise(contents)
         if of is None or of.split is None:
-            expected = f"{formats.names(formats.readable())} inside"
+            expected = f"{formats.listed(formats.readable())} inside"
             raise FormatError("no motion in this file", expected=expected)
         clip, _, problems = source.split(asf_path, of, contents)
         source.accept(problems, strict=strict)
