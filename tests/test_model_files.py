@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 
 import mocapress as mp
-from mocapress.container import Kind, parse
+from mocapress.api import Opened
 from mocapress.models import Place
+from mocapress.source import Source
 from mocapress.storage import ExistsError
 
 pytestmark = pytest.mark.usefixtures("learner")
@@ -44,9 +45,8 @@ def packed(tmp_path: Path, walk: bytes, model: mp.Model) -> Path:
 
 
 def test_files_name_the_model_that_they_need(packed: Path, model: mp.Model, walk: bytes) -> None:
-    mcz = parse(packed.read_bytes())
-    assert (mcz.kind, mcz.model) == (Kind.BVH, model.digest)
-    assert parse(mp.compress(walk, CODEC)).model == b""
+    assert Opened(Source(packed)).streams[0].model == model.digest
+    assert Opened(Source(mp.compress(walk, CODEC))).streams[0].model == b""
 
 
 def test_a_clip_needs_the_model_and_its_text_does_not(

@@ -10,12 +10,14 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from mocapress.codecs import Codec, Model, spec
-from mocapress.container import Kind, pack, pack_file, parse, unpack
+from mocapress.api import Opened
+from mocapress.api.compressing import motion_file
+from mocapress.api.restoring import layout_of
+from mocapress.codecs import Chunk, Codec, Model
+from mocapress.container import StreamHead
 from mocapress.errors import FormatError
 from mocapress.formats.layout import Layout
 from mocapress.models import model_bytes
-from mocapress.restore import chunks_of
 from mocapress.source import Source
 from mocapress_bench.contenders import Tool, contenders
 from mocapress_bench.learning import Learned
@@ -97,30 +99,20 @@ def _codec_row(
     data: bytes, path: Path, codec: Codec, repeat: int, model: Model | None = None
 ) -> Row:
     source = Source(path)
-    (clip, layout, _), split_s = _best(source.split, repeat)
+    parts, split_s = _best(source.split, repeat)
+    clip = parts.clip
     encoded, encode_s = _best(
         lambda: codec.encode(clip.main, skeleton=clip.skeleton, model=model), repeat
     )
     blob, pack_s = _best(
-        lambda: pack_file(
-            kind=Kind[layout.format.upper()],
-            size=len(data),
-            digest=hashlib.sha256(data).digest(),
-            payloads=[(chunk.frames, chunk.restart, chunk.payload) for chunk in encoded.chunks],
-            columns=clip.channels,
-            codec=spec(codec),
-            model=model.digest if model else b"",
-            codec_header=encoded.header,
-            layout=pack(layout.to_bytes()),
-        ),
+        lambda: motion_file(parts, data, path.name, codec, encoded, model, with_skeleton=False),
         repeat,
     )
-    (mcz, read), open_s = _best(lambda: _open(blob), repeat)
-    chunks = chunks_of(mcz)
+    (layout, chunks, head), open_s = _best(lambda: _open(blob), repeat)
     values, decode_s = _best(
-        lambda: codec.decode(mcz.codec_header, chunks, clip.columns, model=model), repeat
+        lambda: codec.decode(head.header, chunks, head.columns, model=model), repeat
     )
-    restored, join_s = _best(lambda: read.join(values), repeat)
+    restored, join_s = _best(lambda: layout.join(values), repeat)
     payload = sum(len(chunk.payload) for chunk in encoded.chunks)
     frames = max(clip.frames, 1)
     return {
@@ -138,10 +130,12 @@ def _codec_row(
     }
 
 
-def _open(blob: bytes) -> tuple[Any, Layout]:
-    mcz = parse(blob)
-    layout = Layout.from_bytes(unpack(mcz.layout, "layout"), mcz.kind.name.lower(), mcz.frames)
-    return mcz, layout
+def _open(blob: bytes) -> tuple[Layout, tuple[Chunk, ...], StreamHead]:
+    """Read all of a file that decoding and printing need."""
+    opened = Opened(Source(blob))
+    original = opened.mcz.original
+    assert original is not None
+    return layout_of(opened, original, opened.mcz.frames()), opened.coded(), opened.streams[0]
 
 
 def _rival_row(data: bytes, path: Path, rival: Rival, repeat: int) -> Row:

@@ -50,7 +50,7 @@ Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* 
 // The inverse. Throws std::invalid_argument when `payload` is not what `encode` makes.
 //
 // Unless `whole`, these are only the chunk's first frames, and what is behind them is not read; of
-// more than kTogether columns all frames must be asked for.
+// more than 1024 columns all frames must be asked for.
 void decode(ByteView payload, double* values, std::size_t frames, const Clip& clip,
             bool whole = true);
 

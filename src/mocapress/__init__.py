@@ -23,14 +23,13 @@ from mocapress.errors import (
 from mocapress.version import __version__
 
 if TYPE_CHECKING:
-    from mocapress.api import compress, read, write
+    from mocapress.api import compress, decompress, load, read, verify, write, writer
     from mocapress.codecs import Model, codec
     from mocapress.container.diffma_json import to_json
     from mocapress.models import load_model, save_model, train
     from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton, Stream
     from mocapress.motion.convert import to_amc_clip, to_bvh_clip
     from mocapress.motion.kinematics import positions, rotations
-    from mocapress.restore import decompress, load
 
 __all__ = [
     "Clip",
@@ -62,13 +61,16 @@ __all__ = [
     "to_bvh_clip",
     "to_json",
     "train",
+    "verify",
     "write",
+    "writer",
 ]
 
 # NumPy and the extension are loaded when they are first needed: importing mocapress stays quick.
 _LAZY = {
-    **dict.fromkeys(("compress", "read", "write"), "mocapress.api"),
-    **dict.fromkeys(("decompress", "load"), "mocapress.restore"),
+    **dict.fromkeys(
+        ("compress", "decompress", "load", "read", "verify", "write", "writer"), "mocapress.api"
+    ),
     **dict.fromkeys(("Model", "codec"), "mocapress.codecs"),
     **dict.fromkeys(("to_amc_clip", "to_bvh_clip"), "mocapress.motion.convert"),
     "to_json": "mocapress.container.diffma_json",

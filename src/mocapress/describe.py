@@ -6,12 +6,11 @@ from typing import Any
 
 from mocapress import api, codecs
 from mocapress.codecs import Encoded, Model
-from mocapress.container import Kind, diffma_json, parse
+from mocapress.container import diffma_json
 from mocapress.errors import MissingModelError
 from mocapress.models import Place, find_model
 from mocapress.motion import Clip
 from mocapress.motion.convert import suggest_unit
-from mocapress.restore import chunks_of, load, load_source
 from mocapress.source import Source
 
 
@@ -92,33 +91,43 @@ def describe_mcz(
     Of codecs that measure themselves, the measures follow: MCR, TCR and APE of APP (Eqs. 11-13).
     A file whose model is missing is described without these.
     """
-    blob = source.data
-    mcz = parse(blob)
-    payloads = sum(entry.length for entry in mcz.index)
+    opened = api.Opened(source, models)
+    mcz, original = opened.mcz, opened.mcz.original
+    main = opened.streams[0] if opened.streams else None
+    model = main.model if main else b""
     facts: dict[str, Any] = {
-        "format": mcz.kind.name.lower(),
-        "codec": mcz.codec or "general-purpose",
-        "model": mcz.model.hex() or None,
-        "model_found": _found(mcz.model, models) if mcz.model else None,
-        "raw_bytes": mcz.size,
-        "compressed_bytes": len(blob),
-        "ratio": mcz.size / len(blob),
-        "payload_bytes": payloads,
-        "layout_bytes": len(mcz.layout),
-        "skeleton_bytes": len(mcz.skeleton) or None,
-        "chunks": len(mcz.index),
-        "sha256": mcz.digest.hex(),
+        "format": (original.format or "bytes") if original else "recording",
+        "name": (original.name if original else "") or None,
+        "codec": codecs.spec(opened.codec()) if main else "general-purpose",
+        "model": model.hex() or None,
+        "model_found": _found(model, models) if model else None,
+        "raw_bytes": original.size if original else None,
+        "compressed_bytes": mcz.size,
+        "ratio": original.size / mcz.size if original else None,
+        "chunk_bytes": sum(entry.end - entry.begin for entry in mcz.entries) or None,
+        "layout_bytes": len(original.packed) if original else None,
+        "companions": ", ".join(companion.name for companion in mcz.companions) or None,
+        "chunks": len(mcz.entries),
+        "closed": mcz.closed,
+        "sha256": original.digest.hex() if original else None,
+        "notes": dict(mcz.notes) or None,
     }
-    if mcz.kind is Kind.BYTES:
+    if main is None:
         return facts
-    columns = load_source(source, slice(0), asf_path=asf_path, strict=strict)
-    facts |= describe_clip(columns, mcz.frames)
-    if mcz.frames and mcz.columns:
-        facts["bits_per_sample"] = 8 * len(blob) / (mcz.frames * mcz.columns)
-    codec = codecs.codec(mcz.codec)
-    if codec.can.measured and facts["model_found"] is not False:
-        clip = columns.with_frames(load(blob, models=models).values, columns.frame_time)
-        facts |= codec.measure(clip, Encoded(mcz.codec_header, chunks_of(mcz)), mcz.size)
+    if len(opened.streams) > 1:
+        facts["streams"] = {
+            stream.name: f"{mcz.frames(index)} x {len(stream.columns)}"
+            for index, stream in enumerate(opened.streams)
+        }
+    frames = mcz.frames()
+    columns = api.load_source(source, slice(0), asf_path=asf_path, strict=strict)
+    facts |= describe_clip(columns, frames)
+    if frames and main.columns:
+        facts["bits_per_sample"] = 8 * mcz.size / (frames * len(main.columns))
+    codec = opened.codec()
+    if original is not None and codec.can.measured and facts["model_found"] is not False:
+        clip = columns.with_frames(opened.rows().values, columns.frame_time)
+        facts |= codec.measure(clip, Encoded(main.header, opened.coded()), original.size)
     return facts
 
 

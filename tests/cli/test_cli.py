@@ -58,7 +58,9 @@ def test_streams(walk: Path) -> None:
     packed = process("compress", "-", data=AMC)
     assert packed.returncode == 0
     assert process("decompress", "-", data=packed.stdout).stdout == AMC
-    assert process("compress", walk, "-o", "-").stdout == packed.stdout
+    named = process("compress", walk, "-o", "-").stdout
+    assert 0 <= len(named) - len(packed.stdout) - len(walk.name) <= 1
+    assert process("decompress", "-", data=named).stdout == AMC
 
 
 def test_json_is_for_machines(walk: Path, tmp_path: Path) -> None:

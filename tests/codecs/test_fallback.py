@@ -192,3 +192,14 @@ def test_any_change_of_a_value_is_a_loss(numbers: list[float], data: st.DataObje
     changed[row] = data.draw(st.floats().filter(lambda x: x not in values[row] and x == x))
     expected = abs(changed[row, 0] - values[row, 0])
     assert Loss.of(values, changed).most == (expected if np.isfinite(values[row, 0]) else np.inf)
+
+
+def test_no_loss_is_shown_as_none(tmp_path: Path) -> None:
+    """In JSON, too, which has no infinite numbers."""
+    file, row = tmp_path / "still.bvh", "0.00000 " * 9 + "\n"
+    head = WALK.read_text().split("MOTION")[0]
+    file.write_text(f"{head}MOTION\nFrames: 1000\nFrame Time: .01\n{1000 * row}")
+    words = ["compress", str(file), "--codec=diffma", "--json"]
+    (told,) = json.loads(CliRunner().invoke(app, words).stdout, parse_constant=pytest.fail)
+    assert told["largest_error"] == 0
+    assert told["psnr"] is None

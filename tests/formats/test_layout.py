@@ -10,8 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mocapress.errors import CorruptError
-from mocapress.formats import columns_of
 from mocapress.formats.layout import Layout
+from mocapress.formats.layout_record import read_layout, write_layout
+from mocapress.formats.patterns import References
+from mocapress.motion import Clip
 from mocapress.source import Source
 
 AMC = b":FULLY-SPECIFIED\n:DEGREES\n" + b"".join(
@@ -24,14 +26,42 @@ BVH = (
 )
 
 
+def references(clip: Clip) -> References:
+    """Give what a layout may refer to."""
+    bones = [column.name.rpartition(".")[0] for column in clip.columns]
+    return References.of(clip.skeleton, bones, clip.frame_time)
+
+
 def restored(data: bytes) -> tuple[bytes, Layout]:
     """Take apart, store the layout, read it again and join."""
     clip, layout, _ = Source(data).split()
-    stored = layout.to_bytes()
-    again = Layout.from_bytes(stored, layout.format, clip.frames)
-    assert again.to_bytes() == stored
-    assert [c.decimal for c in columns_of(again).columns] == [c.decimal for c in clip.columns]
+    again = layout
+    for refer in (References(), references(clip)):
+        stored = write_layout(layout, refer)
+        again = read_layout(stored, layout.format, clip.frames, layout.formats, refer, 2**30)
+        assert write_layout(again, refer) == stored
+        assert again.join(clip.values) == layout.join(clip.values)
     return again.join(clip.values), layout
+
+
+@pytest.mark.parametrize("source", ["amc", "bvh"])
+def test_rows_can_be_left_out(source: str) -> None:
+    """Of rows that are lost, the rest is printed, and the header announces them."""
+    data = AMC.replace(b"3\nroot 3.5", b"3\nroot  3.50") if source == "amc" else BVH
+    data = data.replace(b"1.25 -2.5", b"1.250 -2.5")
+    clip, layout, _ = Source(data).split()
+    keep = np.arange(clip.frames) % 2 == 0
+    refer = references(clip)
+    stored = write_layout(layout, refer)
+    rest = read_layout(
+        stored, layout.format, clip.frames, layout.formats, refer, 2**20, int(keep.sum())
+    )
+    text = rest.rows(keep).join(clip.values[keep])
+    again = Source(text).split()
+    assert again.clip.values.tolist() == clip.values[keep].tolist()
+    assert not again.problems
+    kept = [line for line in data.split(b"\n") if line in text.split(b"\n")]
+    assert len(kept) > len(data.split(b"\n")) / 2
 
 
 @pytest.mark.parametrize("name", ["cmu_01_01.amc", "freebvh.bvh", "mocapbank.bvh"])
@@ -121,12 +151,13 @@ def test_any_numbers_come_back(rows: list[list[str]], gap: str, end: str, last: 
 
 @given(st.binary(max_size=60), st.integers(0, 400), st.integers(0, 255))
 def test_broken_layouts_give_an_error(junk: bytes, at: int, byte: int) -> None:
-    _, layout, _ = Source(AMC).split()
-    stored = bytearray(layout.to_bytes())
+    clip, layout, _ = Source(AMC).split()
+    refer = references(clip)
+    stored = bytearray(write_layout(layout, refer))
     stored[at % len(stored)] = byte
     for broken in (junk, bytes(stored), bytes(stored[: at % len(stored)])):
         try:
-            read = Layout.from_bytes(broken, "amc", 8)
+            read = read_layout(broken, "amc", 8, layout.formats, refer, 10_000)
             read.join(np.zeros((8, len(read.formats))), 10_000)
         except CorruptError:
             pass

@@ -94,7 +94,7 @@ def test_diffma_json() -> None:
 def test_info() -> None:
     facts = row("info", "heights.tbl")
     assert (facts["format"], facts["frames"], facts["joints"]) == ("table", 600, 1)
-    mocapress("compress", "heights.tbl", "--codec", "app")
+    mocapress("compress", "heights.tbl")
     packed = row("info", "heights.tbl.mcz")
     assert (packed["format"], packed["frames"]) == ("table", 600)
 

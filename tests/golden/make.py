@@ -3,9 +3,16 @@
 import math
 import subprocess
 import sys
+import warnings
 from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
 
 import mocapress as mp
 from mocapress.models import model_bytes
@@ -57,22 +64,52 @@ def bvh_rows() -> str:
     )
 
 
-FILES = {
-    "v1_walk.amc": (amc("\r\n").encode(), "app"),
+ASF = b""":version 1.10
+:name made_up
+:units
+  mass 1.0
+  length 0.45
+  angle deg
+:root
+  order TX TY TZ RX RY RZ
+  axis XYZ
+  position 0 0 0
+  orientation 0 0 0
+:bonedata
+  begin
+    id 1
+    name hip
+    direction 0.5 -0.5 0.25
+    length 2.5
+    axis 10 0 -20 XYZ
+    dof rx ry rz
+    limits (-160.0 20.0)
+           (-70.0 70.0)
+           (-60.0 inf)
+  end
+:hierarchy
+  begin
+    root hip
+  end
+"""
+
+WALK_AMC, WALK_LF, WALK_BVH = amc("\r\n").encode(), amc("\n").encode(), (BVH + bvh_rows()).encode()
+# What is compressed, and how; all but the bytes have at least three chunks. NAME.mcz holds NAME.
+FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
+    "v1_walk.amc": (WALK_AMC, "app:chunk=75", {}),
     "v1_walk_lf.amc": (
-        amc("\n").encode()[:-1],
-        "app:t=4,table=k4-non-uniform,mantissa_limit=53,chunk=8",
+        WALK_LF[:-1],
+        "app:t=4,table=k4-non-uniform,mantissa_limit=53,chunk=80",
+        {"notes": {"source": "made up", "license": "Apache-2.0", "author": "mocapress"}},
     ),
-    "v1_walk.bvh": ((BVH + bvh_rows()).encode(), "app:mantissa_limit=53"),
-    "v1_bytes.bin": (bytes(range(256)) * 3, "app"),
-    "v1_exact.amc": (amc("\r\n").encode(), "exact"),
-    "v1_exact_strong.amc": (amc("\n").encode(), "exact:level=9,chunk=100"),
-    "v1_exact_fast.bvh": ((BVH + bvh_rows()).encode(), "exact:level=1"),
-    "v1_lossy.amc": (amc("\n").encode(), "diffma:bits=7,chunk=100"),
-    "v1_lossy.bvh": (
-        (BVH + bvh_rows()).encode(),
-        "diffma:target_psnr=40.0,per=channel,order=auto",
-    ),
+    "v1_walk.bvh": (WALK_BVH, "app:mantissa_limit=53,chunk=90", {}),
+    "v1_bytes.bin": (bytes(range(256)) * 3, "exact", {}),
+    "v1_exact.amc": (WALK_AMC, "exact:chunk=80", {}),
+    "v1_exact_strong.amc": (WALK_LF, "exact:level=9,chunk=100", {}),
+    "v1_exact_fast.bvh": (WALK_BVH, "exact:level=1,chunk=80", {}),
+    "v1_exact_cut.bvh": (WALK_BVH[:-700], "exact:level=2,chunk=80", {}),
+    "v1_lossy.amc": (WALK_LF, "diffma:bits=7,chunk=100", {}),
+    "v1_lossy.bvh": (WALK_BVH, "diffma:target_psnr=40.0,per=channel,order=auto,chunk=80", {}),
 }
 # Beside NAME the document NAME.diffma.json; what comes back of it is NAME.
 DOCUMENTS = {
@@ -99,14 +136,86 @@ def kernels(codec: str) -> bytes:
     return subprocess.run([HERE.parents[1] / program], check=True, capture_output=True).stdout
 
 
+def values(blob: bytes) -> bytes:
+    """Give the numbers of all streams, one behind the other, as little-endian doubles."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", mp.MotionWarning)
+        streams = mp.load(blob, strict=False).streams
+    return b"".join(stream.values.astype("<f8").tobytes() for stream in streams.values())
+
+
+def streams() -> mp.Clip:
+    """Give a clip of two streams at two rates, and one without frames."""
+    motion = mp.read(HERE / "v1_walk.bvh")
+    columns = tuple(mp.Column(f"plate.{kind}", 0, kind, "N") for kind in ("fx", "fy", "fz"))
+    times = np.arange(3 * FRAMES)[:, None]
+    force = np.round(700 + 90 * np.sin(0.05 * times + np.arange(3)), 2)
+    named = (mp.Column("start", -1, "v1"), mp.Column("a.b", -1, "v2", "s"))
+    return replace(
+        motion,
+        streams={
+            **motion.streams,
+            "force": mp.Stream(force, columns, Fraction(1, 360)),
+            "empty": mp.Stream(np.empty((0, 2)), named),
+        },
+        metadata={"actor": "nobody"},
+    )
+
+
+def recorded(codec: str, *, closed: bool) -> bytes:
+    """Record the walk; one that is not closed has the beginning of a chunk at its end."""
+    clip = mp.read(HERE / "v1_walk.amc")
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "take.mcz"
+        with mp.writer(path, clip.columns, 120, codec=codec) as recording:
+            recording.append(clip.values[:100])
+            recording.append(clip.values[100:])
+            if not closed:
+                recording.flush()
+                return path.read_bytes() + b"\x03\x40"
+        return path.read_bytes()
+
+
+def embedded() -> bytes:
+    """Compress the walk with its skeleton."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "v1_embedded.amc"
+        path.write_bytes(WALK_LF)
+        path.with_suffix(".asf").write_bytes(ASF)
+        return mp.compress(path, "exact:chunk=80", embed_asf=True)
+
+
+def trained() -> mp.Model:
+    """Learn from the walk."""
+    return mp.train([HERE / "v1_walk.bvh"], "exact")
+
+
 if __name__ == "__main__":
-    for name, (data, codec) in FILES.items():
-        put(f"{name}.mcz", partial(mp.compress, data, codec))
+    for name, (data, codec, options) in FILES.items():
+        put(name, partial(bytes, data))
+        put(f"{name}.mcz", partial(mp.compress, HERE / name, codec, **options))
         # Of a lossy codec, what comes back is kept.
-        lossless = mp.codec(codec).lossless
-        put(
-            name, partial(bytes, data) if lossless else partial(mp.decompress, HERE / f"{name}.mcz")
-        )
+        if not mp.codec(codec).lossless:
+            put(f"{name}.back", partial(mp.decompress, HERE / f"{name}.mcz"))
+    put("v1_embedded.amc", partial(bytes, WALK_LF))
+    put("v1_embedded.amc.mcz", embedded)
+    put("v1_embedded.companion", partial(bytes, ASF))
+    put("v1_trained.mcm", lambda: model_bytes(trained()))
+    put("v1_trained.bvh", partial(bytes, WALK_BVH))
+    put(
+        "v1_trained.bvh.mcz",
+        lambda: mp.compress(
+            HERE / "v1_trained.bvh", "exact:chunk=80", model=HERE / "v1_trained.mcm"
+        ),
+    )
+    # Without an original; NAME.f64 holds the numbers.
+    put("v1_streams.mcz", lambda: mp.compress(streams(), "exact:chunk=80"))
+    put("v1_recorded.mcz", partial(recorded, "exact:chunk=80", closed=True))
+    put("v1_recorded_killed.mcz", partial(recorded, "exact:level=1,chunk=80", closed=False))
+    put("v1_recorded_lossy.mcz", partial(recorded, "diffma:chunk=80", closed=True))
+    for path in sorted(HERE.glob("*.mcz")):
+        if not path.with_suffix("").suffix:
+            put(f"{path.stem}.f64", partial(values, path.read_bytes()))
     for name, (data, codec) in DOCUMENTS.items():
         put(f"{name}.diffma.json", partial(mp.to_json, data, codec))
         put(name, partial(mp.decompress, HERE / f"{name}.diffma.json"))

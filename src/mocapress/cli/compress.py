@@ -72,6 +72,8 @@ def compress(
     debug: Debug = False,
 ) -> None:
     """Compress motion files to .mcz or JSON; each result is decoded and compared before writing."""
+    from math import isfinite
+
     from mocapress import api
     from mocapress.cli.batch import find, run
     from mocapress.cli.models import open_model
@@ -105,7 +107,7 @@ def compress(
             )
             blob, loss = compressed.blob, compressed.loss
             facts["largest_error"] = loss.most if loss else None
-            facts["psnr"] = loss.psnr if loss else None
+            facts["psnr"] = loss.psnr if loss and isfinite(loss.psnr) else None
             facts["warning"] = compressed.warning
         else:
             blob = diffma_json.named(to, diffma_json.file_to_json(source, made, asf_path=asf))

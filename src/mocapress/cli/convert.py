@@ -112,11 +112,10 @@ def _format(to: str | None, output: str | None) -> "Format":
 def _read(source: "Source", asf: Path | None, models: "Sequence[Place]", *, strict: bool) -> "Clip":
     from mocapress import api
     from mocapress.errors import UnsupportedError
-    from mocapress.restore import load_source
     from mocapress.source import MCZ
 
     if source.kind == MCZ:
-        clip = load_source(source, asf_path=asf, models=models, strict=strict)
+        clip = api.load_source(source, asf_path=asf, models=models, strict=strict)
     else:
         clip = api.read_source(source, asf, strict=strict)
     if clip.skeleton is None:

@@ -6,6 +6,8 @@ through this registry.
 
 import dataclasses
 import importlib
+from collections.abc import Mapping
+from functools import cache
 from typing import TYPE_CHECKING, Any, get_type_hints
 
 from mocapress.codecs.contract import (
@@ -39,7 +41,9 @@ __all__ = [
     "codec",
     "codec_ids",
     "digest_of",
+    "from_parameters",
     "learner",
+    "parameters",
     "spec",
     "with_level",
 ]
@@ -109,8 +113,7 @@ def codec(text: str) -> Codec:
     """
     name, _, rest = text.partition(":")
     cls = _class(name)
-    types = get_type_hints(cls)
-    known = {field.name: types[field.name] for field in dataclasses.fields(cls)}
+    known = _types(cls)
     values: dict[str, Any] = {}
     for item in filter(None, rest.split(",")):
         key, equals, value = item.partition("=")
@@ -135,6 +138,36 @@ def spec(made: Codec) -> str:
         if given[field.name] != field.default
     ]
     return f"{made.id}:{','.join(changed)}" if changed else made.id
+
+
+def parameters(made: Codec) -> dict[str, int | float | str | bool]:
+    """Give all parameters of a codec, as a file keeps them."""
+    fields: Any = dataclasses.fields(made)  # type: ignore[arg-type]
+    return {field.name: getattr(made, field.name) for field in fields}
+
+
+def from_parameters(name: str, given: Mapping[str, int | float | str | bool]) -> Codec:
+    """Make a codec of its id and parameters; those that are missing have their usual values.
+
+    Raises
+    ------
+    ParameterError
+        When the id, a parameter's name or its value is not known.
+
+    """
+    cls = _class(name)
+    types = _types(cls)
+    for parameter, value in given.items():
+        kind = types.get(parameter)
+        # A bool is an int to Python, not to a file; a whole number may stand for a float.
+        if type(value) is not kind and not (kind is float and type(value) is int):
+            raise ParameterError(
+                f"codec {name} has no such parameter",
+                expected=", ".join(types),
+                found=f"{parameter}={value!r}",
+            )
+    built: Codec = cls(**given)
+    return built
 
 
 def learner(made: Codec, model: Model | None = None) -> Codec:
@@ -168,6 +201,12 @@ def with_level(made: Codec, level: int) -> Codec:
         raise ParameterError("level", expected="1 to 9", found=repr(level))
     leveled: Codec = dataclasses.replace(made, level=level)  # type: ignore[type-var]
     return leveled
+
+
+@cache
+def _types(cls: Any) -> dict[str, Any]:
+    types = get_type_hints(cls)
+    return {field.name: types[field.name] for field in dataclasses.fields(cls)}
 
 
 def _parse(kind: Any, text: str, where: str) -> Any:

@@ -10,15 +10,19 @@ from mocapress import codecs
 from mocapress.codecs import Codec
 from mocapress.codecs.diffma.document import Document, read_document
 from mocapress.codecs.fallback import naming_faults
-from mocapress.container import Kind, pack, unpack
+from mocapress.container.columns import Columns, bones_of, read_columns, write_columns
+from mocapress.container.limits import most_printed
+from mocapress.container.packing import pack, unpack
 from mocapress.errors import (
     CorruptError,
     FormatError,
     ParameterError,
     UnsupportedError,
 )
-from mocapress.formats import columns_of
 from mocapress.formats.layout import Layout
+from mocapress.formats.layout_record import read_layout, write_layout
+from mocapress.formats.number_formats import SHORTEST
+from mocapress.formats.patterns import References
 from mocapress.motion import Clip, Column
 from mocapress.records import Reader, Writer
 from mocapress.source import JSON_SUFFIXES, Named, Source
@@ -101,10 +105,7 @@ def file_to_json(source: Source, codec: Codec, *, asf_path: str | Path | None = 
     clip, layout, problems = source.split(asf_path)
     source.accept(problems)
     source.warn_of_guess()
-    writer = Writer()
-    writer.integer(Kind[layout.format.upper()])
-    writer.integer(clip.frames)
-    return clip_to_json(clip, codec, layout=bytes(writer.data) + pack(layout.to_bytes()))
+    return clip_to_json(clip, codec, layout=_packed(layout, clip))
 
 
 def clip_to_json(clip: Clip, codec: Codec, *, layout: bytes = b"") -> bytes:
@@ -155,15 +156,8 @@ def json_to_clip(data: bytes | memoryview, *, bound: float | None = None) -> Cli
     Columns, skeleton and frame time are as far known as the document says.
     """
     document = open_json(data)
-    layout = _layout(document)
-    if layout is not None:
-        clip = columns_of(layout, document.skeleton)
-        if clip.channels != len(document.names):
-            raise _misfit("channels", len(document.names), clip.channels)
-        return clip.with_frames(document.decode(bound), clip.frame_time)
-    return Clip.of(
-        document.decode(bound), _columns(document), document.frame_time, document.skeleton
-    )
+    columns = _unpacked(document)[0].columns if document.layout else _columns(document)
+    return Clip.of(document.decode(bound), columns, document.frame_time, document.skeleton)
 
 
 def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:
@@ -181,34 +175,58 @@ def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:
 
     """
     document = open_json(data)
-    layout = _layout(document)
-    if layout is None:
+    if not document.layout:
         raise UnsupportedError(
             "$.layout is not there to make the file again",
             expected="a file that mocapress compress made, or convert --to bvh",
         )
+    found, kind, record = _unpacked(document)
     values = document.decode()
-    if values.shape[1] != len(layout.formats):
-        raise _misfit("channels", values.shape[1], len(layout.formats))
-    return layout.format, layout.join(values, (1 << 24) + 64 * (values.size + len(data)))
+    most = most_printed(1 << 24, values.size + len(data))
+    formats = tuple(column.decimal or SHORTEST for column in found.columns)
+    layout = read_layout(record, kind, document.frames, formats, _references(found), most)
+    return kind, layout.join(values, most)
 
 
 def format_of(data: bytes | memoryview) -> str:
     """Give the id of the format of the motion file that a document was made of, or ``json``."""
-    layout = _layout(open_json(data))
-    return layout.format if layout else "json"
+    document = open_json(data)
+    return _unpacked(document)[1] if document.layout else "json"
 
 
-def _layout(document: Document) -> Layout | None:
-    if not document.layout:
-        return None
+def _packed(layout: Layout, clip: Clip) -> bytes:
+    """Give the layout of a document: format, frames, and, packed, the columns and the layout."""
+    writer, record = Writer(), Writer()
+    write_columns(record, clip.columns, None)
+    columns = Columns(clip.columns, bones_of(clip.columns))
+    writer.text(layout.format)
+    writer.integer(clip.frames)
+    packed = pack(bytes(record.data) + write_layout(layout, _references(columns)))
+    return bytes(writer.data) + packed
+
+
+def _unpacked(document: Document) -> tuple[Columns, str, bytes]:
+    """Give the columns, the format's id, and the layout that is not read yet."""
     reader = Reader(document.layout, "$.layout")
-    kind, frames = Kind(reader.integer(max(Kind))), reader.integer()
-    if kind is Kind.BYTES or frames != document.frames:
+    kind, frames = reader.text(), reader.integer()
+    if frames != document.frames:
         raise _misfit("frames", document.frames, frames)
     most = (1 << 22) + 64 * len(document.layout)
-    packed = document.layout[reader.position :]
-    return Layout.from_bytes(unpack(packed, "$.layout", most), kind.name.lower(), frames)
+    record = Reader(unpack(reader.raw(reader.left), "$.layout", most), "$.layout")
+    columns = read_columns(record, None)
+    joints = len(document.skeleton.joints) if document.skeleton else len(document.names)
+    if len(columns.columns) != len(document.names):
+        raise _misfit("channels", len(document.names), len(columns.columns))
+    if any(column.joint >= joints for column in columns.columns):
+        raise _misfit("joints", joints, max(column.joint for column in columns.columns) + 1)
+    return columns, kind, record.raw(record.left)
+
+
+def _references(columns: Columns) -> References:
+    """Give what the layout refers to: bones alone, as the rest stands in the document as text."""
+    return References.of(
+        None, [bone.name for bone in columns.bones for _ in range(bone.columns)], None
+    )
 
 
 def _misfit(what: str, expected: int, found: int) -> FormatError:

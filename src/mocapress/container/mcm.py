@@ -61,9 +61,7 @@ def parse_model(data: bytes | memoryview) -> tuple[Mcm, bytes]:
     """
     reader = Reader(data, "file")
     header = _read_header(reader)
-    number, packed = read_section(reader, _PAYLOAD)
-    if number != _PAYLOAD:
-        raise reader.fail(f"section {number} in the wrong place")
+    packed = read_section(reader, _PAYLOAD, "payload")
     reader.end()
     return header, unpack(packed, "model", LARGEST_PAYLOAD)
 
@@ -75,10 +73,7 @@ def peek_model(data: bytes | memoryview) -> Mcm:
 
 def _read_header(reader: Reader) -> Mcm:
     read_magic(reader, MAGIC, VERSION, ".mcm")
-    number, content = read_section(reader, _PAYLOAD)
-    if number != _HEADER:
-        raise reader.fail(f"section {number} in the wrong place")
-    header = Reader(content, "header")
+    header = Reader(read_section(reader, _HEADER, "header"), "header")
     try:
         codec = header.raw(header.integer(_LONGEST_ID)).decode()
     except UnicodeDecodeError:

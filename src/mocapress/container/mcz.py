@@ -1,215 +1,323 @@
-"""Writing and reading ``.mcz`` files, as docs/format.md lays them down."""
+"""Reading ``.mcz`` files, as docs/format.md lays them down."""
 
-import zlib
-from collections.abc import Sequence
-from dataclasses import dataclass
-from enum import IntEnum
-from typing import NamedTuple
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple, Protocol
 
-from mocapress.container.sections import read_magic, read_section, section
-from mocapress.errors import CorruptError
-from mocapress.records import Reader, Writer
+from mocapress.container import limits
+from mocapress.container.chunks import DISTANCE, CodedChunk, Entry, read_chunk, read_end
+from mocapress.container.head import Head, read_head
+from mocapress.container.original import (
+    Companion,
+    Original,
+    read_companion,
+    read_notes,
+    read_original,
+)
+from mocapress.container.sections import (
+    CHECKSUM,
+    LEAST,
+    MAY_BE_SKIPPED,
+    Section,
+    checked,
+    next_section,
+    read_magic,
+)
+from mocapress.container.tags import MAGIC, VERSION, Tag
+from mocapress.errors import CorruptError, MocapressError, UnsupportedError
+from mocapress.records import Reader
 
-MAGIC = b"\x89MCZ"
-VERSION = 1
-_HEADER, _LAYOUT, _SKELETON, _INDEX = range(1, 5)
+_BEGIN = len(MAGIC) + 1
+_FRONT = 2**14
+"""Bytes that are read first; mostly all that stands before the chunks is in them."""
 
 
-class Kind(IntEnum):
-    """What kind of file is inside."""
+class Ranges(Protocol):
+    """A file of which parts are read."""
 
-    BYTES = 0
-    AMC = 1
-    BVH = 2
+    @property
+    def size(self) -> int:
+        """Number of bytes."""
+        ...
 
-
-class Entry(NamedTuple):
-    """A chunk in the index."""
-
-    frames: int
-    length: int
-    restart: bool
-    crc: int
+    def read(self, start: int = 0, stop: int | None = None) -> bytes:
+        """Give bytes [start, stop), or as many of them as there are."""
+        ...
 
 
-@dataclass(frozen=True, slots=True)
+class Damage(NamedTuple):
+    """Something in a file that cannot be read."""
+
+    where: str
+    error: MocapressError
+
+
+@dataclass(slots=True)
 class Mcz:
-    """A parsed file: the sections' contents, and the payloads where they lie."""
+    """A file, opened: all but its chunks is read."""
 
-    kind: Kind
+    ranges: Ranges
     size: int
-    """Of the original file, bytes."""
-    digest: bytes
-    """SHA-256 of the original file."""
-    frames: int
-    columns: int
-    codec: str
-    model: bytes
-    codec_header: bytes
-    layout: bytes
-    """Packed; empty in kind ``BYTES``."""
-    skeleton: bytes
-    """Packed; empty where there is none."""
-    index: tuple[Entry, ...]
-    data: memoryview
-    """The whole file."""
-    begin: int
-    """Where the payloads begin."""
+    head: Head | None = None
+    """None of a file that is no motion."""
+    original: Original | None = None
+    """None where there is no original file."""
+    notes: dict[str, str] = field(default_factory=dict)
+    companions: list[Companion] = field(default_factory=list)
+    entries: list[Entry] = field(default_factory=list)
+    """All chunks, in the order of the file."""
+    of_stream: list[list[Entry]] = field(default_factory=list)
+    """The chunks of each stream, in the order of their frames."""
+    closed: bool = True
+    """Whether the file has its end; a recording that was killed has none."""
+    damage: list[Damage] = field(default_factory=list)
+    """What could not be read; empty unless the file was opened to be salvaged."""
 
-    def chunk_range(self, first: int, last: int) -> tuple[int, int, int]:
-        """Find the chunks that decoding frames [first, last) needs.
+    def frames(self, stream: int = 0) -> int:
+        """Give how many frames a stream has."""
+        announced = self.head.streams[stream].frames if self.head else 0
+        if announced is not None:
+            return announced
+        return self.of_stream[stream][-1].last if self.of_stream[stream] else 0
 
-        Returns
-        -------
-        tuple
-            Index of the first such chunk, one behind the last, and the first one's first frame.
-
-        """
-        start = stop = start_frame = frame = 0
-        for i, entry in enumerate(self.index):
-            if entry.restart and frame <= first:
-                start, start_frame = i, frame
-            frame += entry.frames
-            if frame >= last:
-                stop = i + 1
-                break
-        return start, max(stop, start), start_frame
-
-    def payload(self, chunk: int) -> bytes:
-        """Give one chunk's payload.
+    def read_chunk(self, entry: Entry) -> CodedChunk:
+        """Read a chunk.
 
         Raises
         ------
         CorruptError
-            When its checksum is wrong.
+            When it is damaged, or not the one that the file's end announces.
 
         """
-        begin = self.begin + sum(entry.length for entry in self.index[:chunk])
-        entry = self.index[chunk]
-        payload = bytes(self.data[begin : begin + entry.length])
-        if zlib.crc32(payload) != entry.crc:
-            raise CorruptError(
-                f"chunk {chunk}: wrong checksum",
-                offset=begin,
-                expected=f"{entry.crc:08x}",
-                found=f"{zlib.crc32(payload):08x}",
-            )
-        return payload
+        where = f"chunk of frames {entry.first} to {entry.last - 1}"
+        reader = Reader(_whole(self.ranges, entry.begin, entry.end), where)
+        found = next_section(reader, entry.begin)
+        reader.end()
+        chunk = read_chunk(checked(found, where), entry.begin, entry.end)
+        if found.tag != Tag.CHUNK or chunk.entry != entry:
+            raise CorruptError(f"{where}: another section stands here", offset=entry.begin)
+        return chunk
 
 
-def pack_file(
-    *,
-    kind: Kind,
-    size: int,
-    digest: bytes,
-    payloads: Sequence[tuple[int, bool, bytes]],
-    columns: int = 0,
-    codec: str = "",
-    model: bytes = b"",
-    codec_header: bytes = b"",
-    layout: bytes = b"",
-    skeleton: bytes = b"",
-) -> bytes:
-    """Make a file; ``payloads`` are (frames, restart, payload), layout and skeleton packed."""
-    header = Writer()
-    header.integer(kind)
-    header.integer(size)
-    header.data += digest
-    header.integer(sum(frames for frames, _, _ in payloads))
-    header.integer(columns)
-    header.bytes(codec.encode())
-    header.bytes(model)
-    header.bytes(codec_header)
-    index = Writer()
-    index.integer(len(payloads))
-    for frames, restart, payload in payloads:
-        index.integer(frames)
-        index.integer(len(payload))
-        index.data.append(restart)
-        index.data += zlib.crc32(payload).to_bytes(4, "little")
-    parts = [MAGIC, bytes([VERSION]), section(_HEADER, bytes(header.data))]
-    if layout:
-        parts.append(section(_LAYOUT, layout))
-    if skeleton:
-        parts.append(section(_SKELETON, skeleton))
-    parts.append(section(_INDEX, bytes(index.data)))
-    return b"".join(parts + [payload for _, _, payload in payloads])
+def open_mcz(ranges: Ranges, *, salvage: bool = False) -> Mcz:
+    """Read a file's sections up to the chunks, and where these are.
 
-
-def parse(data: bytes | memoryview) -> Mcz:
-    """Read a file's sections; payloads are checked when they are taken.
+    Parameters
+    ----------
+    ranges
+        The file.
+    salvage
+        Whether to go on where something is damaged and list it, as far as there is a head or an
+        original.
 
     Raises
     ------
     CorruptError
         When the data is not a ``.mcz`` file, or a damaged one.
     UnsupportedError
-        When it is of a later version.
+        When it is of a later version, or has a section that this version must know and does not.
 
     """
-    data = memoryview(data)
-    reader = Reader(data, "file")
-    read_magic(reader, MAGIC, VERSION, ".mcz")
-    sections: dict[int, bytes] = {}
-    while _INDEX not in sections:
-        number, content = read_section(reader, _INDEX)
-        if number <= max(sections, default=0):
-            raise reader.fail(f"section {number} in the wrong place")
-        sections[number] = content
-    if _HEADER not in sections:
-        raise reader.fail("no header section")
-    mcz = _read_header(sections, data, reader.position)
-    length = sum(entry.length for entry in mcz.index)
-    if mcz.begin + length != len(data):
+    size = ranges.size
+    front = _whole(ranges, 0, min(size, _FRONT))
+    read_magic(Reader(front, "file"), MAGIC, VERSION, ".mcz")
+    mcz = Mcz(ranges, size)
+    collect = _Collector(mcz, salvage)
+    end = _find_end(ranges, size)
+    if end is None:
+        _walk(mcz, collect)
+    else:
+        try:
+            mcz.entries = read_end(end.content, end.begin)
+        except CorruptError as error:
+            collect.damaged("end", error)
+            _walk(mcz, collect)
+        else:
+            _read_between(mcz, collect, front, end)
+    if mcz.head is None and mcz.original is None:
         raise CorruptError(
-            "wrong length of the file",
-            offset=len(data),
-            expected=f"{mcz.begin + length} bytes",
-            found=f"{len(data)}",
+            "nothing in this file can be read" if salvage else "neither head nor file section"
         )
-    if mcz.frames * max(mcz.columns, 1) > 2**24 + 512 * length:
-        raise CorruptError(f"{mcz.frames} x {mcz.columns} values in {length} bytes")
-    if mcz.size > 2**28 + 2**14 * len(data):
-        raise CorruptError(f"{mcz.size} bytes announced in a file of {len(data)}")
+    _check(mcz, collect)
     return mcz
 
 
-def _read_header(sections: dict[int, bytes], data: memoryview, begin: int) -> Mcz:
-    header = Reader(sections[_HEADER], "header")
-    kind = Kind(header.integer(max(Kind)))
-    size, digest = header.integer(), header.raw(32)
-    frames, columns = header.integer(), header.integer(2**20)
+class _Collector:
+    """Takes the sections beside chunks, in the order of the file."""
+
+    def __init__(self, mcz: Mcz, salvage: bool) -> None:
+        self.mcz, self.salvage = mcz, salvage
+        self.seen: set[int] = set()
+
+    def damaged(self, where: str, error: MocapressError) -> None:
+        """List what is damaged, or raise it."""
+        if not self.salvage:
+            raise error
+        self.mcz.damage.append(Damage(where, error))
+
+    def take(self, section: Section, *, chunks_before: bool) -> None:
+        """Read a section."""
+        name = _name(section.tag)
+        try:
+            content = checked(section, f"section {name}")
+            if section.tag in self.seen and section.tag != Tag.COMPANION:
+                raise CorruptError(f"a second section {name}", offset=section.begin)
+            self.seen.add(section.tag)
+            self._read(section.tag, content, section.begin, chunks_before=chunks_before)
+        except MocapressError as error:
+            self.damaged(f"section {name} at byte {section.begin}", error)
+
+    def _read(self, tag: int, content: bytes, begin: int, *, chunks_before: bool) -> None:
+        mcz = self.mcz
+        must_know = not tag & MAY_BE_SKIPPED
+        if must_know and (chunks_before or (tag == Tag.HEAD and mcz.original)):
+            raise CorruptError(f"section {_name(tag)} in the wrong place", offset=begin)
+        if tag == Tag.HEAD:
+            mcz.head = read_head(content)
+        elif tag == Tag.FILE:
+            mcz.original = read_original(content, mcz.size)
+        elif tag == Tag.NOTES:
+            mcz.notes = read_notes(content)
+        elif tag == Tag.COMPANION:
+            mcz.companions.append(read_companion(content, mcz.size))
+        elif must_know:
+            raise UnsupportedError(
+                f"section {_name(tag)} is not known to this version of mocapress", offset=begin
+            )
+
+
+def _find_end(ranges: Ranges, size: int) -> Section | None:
+    """Find the last section by the file's last bytes; None where there is none."""
+    tail = ranges.read(max(size - DISTANCE - CHECKSUM, 0), size)
+    distance = int.from_bytes(tail[:DISTANCE], "little")
+    if not LEAST + DISTANCE < distance <= size - _BEGIN:
+        return None
     try:
-        codec = header.bytes().decode()
-    except UnicodeDecodeError:
-        raise header.fail("codec is not text") from None
-    model, codec_header = header.bytes(), header.bytes()
-    header.end()
-    if (kind is Kind.BYTES) == (_LAYOUT in sections) or len(model) not in (0, 32):
-        raise header.fail("sections do not fit the kind of file")
-    index = Reader(sections[_INDEX], "index")
-    entries = []
-    for _ in range(index.count(7)):
-        entry_frames, length, flags = index.integer(), index.integer(), index.integer(1)
-        crc = int.from_bytes(index.raw(4), "little")
-        entries.append(Entry(entry_frames, length, bool(flags), crc))
-    index.end()
-    if sum(entry.frames for entry in entries) != frames or (entries and not entries[0].restart):
-        raise index.fail("chunks do not make up the clip")
-    if kind is Kind.BYTES and len(entries) != 1:
-        raise index.fail("not one chunk")
-    return Mcz(
-        kind,
-        size,
-        digest,
-        frames,
-        columns,
-        codec,
-        model,
-        codec_header,
-        sections.get(_LAYOUT, b""),
-        sections.get(_SKELETON, b""),
-        tuple(entries),
-        data,
-        begin,
-    )
+        reader = Reader(_whole(ranges, size - distance, size), "end")
+        found = next_section(reader, size - distance)
+        reader.end()
+    except CorruptError:
+        return None
+    return found if found.tag == Tag.END and found.sound else None
+
+
+def _read_between(mcz: Mcz, collect: _Collector, front: bytes, end: Section) -> None:
+    """Read the sections before, between and behind the chunks."""
+    begin, chunks_before = _BEGIN, False
+    for begin_of_next, end_of_next in [*((e.begin, e.end) for e in mcz.entries), (end.begin, 0)]:
+        if begin_of_next > begin or begin == _BEGIN:
+            held = begin_of_next <= len(front)
+            part = front[begin:begin_of_next] if held else _whole(mcz.ranges, begin, begin_of_next)
+            reader = Reader(part, "file")
+            try:
+                while reader.left:
+                    collect.take(next_section(reader, begin), chunks_before=chunks_before)
+            except CorruptError as error:
+                collect.damaged(f"what stands at byte {begin + reader.position}", error)
+        begin, chunks_before = end_of_next, True
+
+
+def _walk(mcz: Mcz, collect: _Collector) -> None:
+    """Go from section to section, where the file's end is missing or damaged."""
+    mcz.closed = False
+    data = _whole(mcz.ranges, _BEGIN, mcz.size)
+    for section in _sections(data, collect):
+        if section.tag == Tag.CHUNK:
+            try:
+                content = checked(section, "chunk")
+                mcz.entries.append(read_chunk(content, section.begin, section.end).entry)
+            except CorruptError as error:
+                collect.damaged(f"chunk at byte {section.begin}", error)
+        elif section.tag == Tag.END:
+            if section.end < mcz.size:
+                behind = CorruptError("bytes behind the end of the file", offset=section.end)
+                collect.damaged("what follows", behind)
+            break
+        else:
+            collect.take(section, chunks_before=bool(mcz.entries))
+
+
+def _sections(data: bytes, collect: _Collector) -> Iterator[Section]:
+    """Give whole sections; what is cut off at the end is none."""
+    reader = Reader(data, "file")
+    while reader.left:
+        start = reader.position
+        try:
+            section = next_section(reader, _BEGIN)
+        except CorruptError:
+            return
+        torn = not section.sound and (not reader.left or not any(data[start:]))
+        if torn:
+            return
+        if not section.sound and data[reader.position] not in set(Tag):
+            error = CorruptError("no section", offset=section.begin)
+            collect.damaged(f"what stands at byte {section.begin} and behind", error)
+            return
+        yield section
+
+
+def _check(mcz: Mcz, collect: _Collector) -> None:
+    """See that streams, chunks and announcements fit each other."""
+    streams = mcz.head.streams if mcz.head else ()
+    recording = bool(streams) and not mcz.original and all(s.frames is None for s in streams)
+    if not mcz.closed and not recording:
+        error = CorruptError(
+            "the file is cut off, or its end has a wrong checksum", offset=mcz.size
+        )
+        collect.damaged("end", error)
+    if mcz.head is None and (mcz.entries or (mcz.original and mcz.original.format)):
+        collect.damaged("head", CorruptError("a motion file without a head"))
+    mcz.of_stream = [[] for _ in streams]
+    for entry in mcz.entries:
+        _place(mcz, entry, collect)
+    values = 0
+    for index, stream in enumerate(streams):
+        values += mcz.frames(index) * max(len(stream.columns), 1)
+        reached = mcz.of_stream[index][-1].last if mcz.of_stream[index] else 0
+        # What is missing of a file that is salvaged shows when its frames are asked for.
+        if stream.frames not in (None, reached) and not collect.salvage:
+            raise CorruptError(
+                f"chunks of stream {stream.name!r}",
+                expected=f"{stream.frames} frames",
+                found=str(reached),
+            )
+    limits.check_values(values, mcz.size)
+
+
+def _place(mcz: Mcz, entry: Entry, collect: _Collector) -> None:
+    """Add a chunk to its stream, where it follows those before it."""
+    if entry.stream >= len(mcz.of_stream):
+        error = CorruptError("a chunk of no stream", offset=entry.begin)
+        collect.damaged(f"chunk at byte {entry.begin}", error)
+        return
+    before = mcz.of_stream[entry.stream]
+    expected = before[-1].last if before else 0
+    if entry.first < expected or (entry.first > expected and not collect.salvage):
+        error = CorruptError(
+            "chunks in the wrong order",
+            offset=entry.begin,
+            expected=f"frame {expected}",
+            found=str(entry.first),
+        )
+        collect.damaged(f"chunk at byte {entry.begin}", error)
+    if not before and not entry.restart and not collect.salvage:
+        error = CorruptError("a first chunk that needs one before", offset=entry.begin)
+        collect.damaged(f"chunk at byte {entry.begin}", error)
+    if entry.first >= expected:
+        before.append(entry)
+
+
+def _name(tag: int) -> str:
+    return Tag(tag).name.lower() if tag in set(Tag) else f"{tag:02x}"
+
+
+def _whole(ranges: Ranges, start: int, stop: int) -> bytes:
+    data = ranges.read(start, stop)
+    if len(data) != stop - start:
+        raise CorruptError(
+            "the file became shorter while it was read",
+            offset=start + len(data),
+            expected=f"{stop - start} bytes at byte {start}",
+            found=str(len(data)),
+        )
+    return data

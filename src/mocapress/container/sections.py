@@ -1,9 +1,29 @@
 """Sections with checksums, of which ``.mcz`` and ``.mcm`` files are made."""
 
 import zlib
+from typing import NamedTuple
 
 from mocapress.errors import CorruptError, UnsupportedError
 from mocapress.records import Reader, Writer
+
+MAY_BE_SKIPPED = 0x80
+"""The bit of a tag that lets readers pass over a section that they do not know."""
+CHECKSUM = 4
+LEAST = 1 + 1 + CHECKSUM
+"""Bytes of an empty section."""
+
+
+class Section(NamedTuple):
+    """A section of a file."""
+
+    tag: int
+    begin: int
+    """Byte offset of its tag."""
+    end: int
+    """Byte offset behind its checksum."""
+    content: bytes
+    sound: bool
+    """Whether its checksum is right."""
 
 
 def read_magic(reader: Reader, magic: bytes, version: int, name: str) -> None:
@@ -28,28 +48,60 @@ def read_magic(reader: Reader, magic: bytes, version: int, name: str) -> None:
         )
 
 
-def section(number: int, content: bytes) -> bytes:
-    """Make a section: number, content, checksum."""
+def section(tag: int, content: bytes) -> bytes:
+    """Make a section: tag, length, content, checksum."""
     writer = Writer()
-    writer.integer(number)
+    writer.data.append(tag)
     writer.bytes(content)
-    return bytes(writer.data) + zlib.crc32(writer.data).to_bytes(4, "little")
+    return bytes(writer.data) + zlib.crc32(writer.data).to_bytes(CHECKSUM, "little")
 
 
-def read_section(reader: Reader, last: int) -> tuple[int, bytes]:
-    """Take a section numbered 1 to ``last``: its number and its content."""
+def next_section(reader: Reader, begin: int = 0) -> Section:
+    """Take a section, sound or not; ``begin`` is the offset of the reader's data in the file.
+
+    Raises
+    ------
+    CorruptError
+        When it is cut off.
+
+    """
     start = reader.position
-    number = reader.raw(1)[0]
-    if not 1 <= number <= last:
-        raise reader.fail(f"section {number} is not known")
+    tag = reader.raw(1)[0]
     content = reader.bytes()
-    found = zlib.crc32(reader.data[start : reader.position])
-    expected = int.from_bytes(reader.raw(4), "little")
-    if found != expected:
+    checksum = zlib.crc32(reader.data[start : reader.position])
+    sound = checksum == int.from_bytes(reader.raw(CHECKSUM), "little")
+    return Section(tag, begin + start, begin + reader.position, content, sound)
+
+
+def checked(found: Section, name: str) -> bytes:
+    """Give a section's content.
+
+    Raises
+    ------
+    CorruptError
+        When its checksum is wrong.
+
+    """
+    if not found.sound:
+        raise CorruptError(f"{name}: wrong checksum", offset=found.begin)
+    return found.content
+
+
+def read_section(reader: Reader, tag: int, name: str) -> bytes:
+    """Take the content of a section that must be of this tag.
+
+    Raises
+    ------
+    CorruptError
+        When it is another, cut off, or its checksum is wrong.
+
+    """
+    found = next_section(reader)
+    if found.tag != tag:
         raise CorruptError(
-            f"section {number}: wrong checksum",
-            offset=start,
-            expected=f"{expected:08x}",
-            found=f"{found:08x}",
+            f"{name}: another section stands here",
+            offset=found.begin,
+            expected=f"{tag:02x}",
+            found=f"{found.tag:02x}",
         )
-    return number, content
+    return checked(found, name)

@@ -6,22 +6,18 @@ by an entry point of the group ``mocapress.formats`` that names a ``Format``.
 
 import warnings
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
 
-from mocapress.errors import FormatError, UnsupportedError
+from mocapress.errors import UnsupportedError
 from mocapress.formats.contract import Format, Split
-from mocapress.formats.layout import Layout
-from mocapress.motion import Clip, Skeleton
 
 __all__ = [
     "Format",
     "Split",
     "by_id",
     "by_name",
-    "columns_of",
     "formats",
     "listed",
     "readable",
@@ -119,25 +115,3 @@ def listed(of: Iterable[Format], last: str = "or") -> str:
     """List formats for people: ``AMC, ASF or BVH``."""
     *some, final = sorted(made.name for made in of)
     return f"{', '.join(some)} {last} {final}" if some else final
-
-
-def columns_of(layout: Layout, skeleton: Skeleton | None = None) -> Clip:
-    """Give the clip without frames that belongs to a layout: columns, frame time, skeleton.
-
-    Raises
-    ------
-    FormatError
-        When header and rows of the layout are not those of its format.
-
-    """
-    split = by_id(layout.format).split
-    if split is None:
-        raise UnsupportedError("a format that is only written", found=repr(layout.format))
-    empty = split(layout.first_row(), skeleton, None).clip
-    if empty.channels != len(layout.formats):
-        raise FormatError("columns", expected=str(len(layout.formats)), found=str(empty.channels))
-    columns = tuple(
-        replace(column, decimal=number_format)
-        for column, number_format in zip(empty.columns, layout.formats, strict=True)
-    )
-    return empty.with_columns(columns)[:0]

@@ -5,21 +5,20 @@ that are not written as their column is, and the way back to bytes.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from itertools import groupby
+from dataclasses import dataclass, replace
+from itertools import compress
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.errors import CorruptError
-from mocapress.formats.number_formats import detect, packed
+from mocapress.formats.number_formats import SHORTEST, detect, packed
 from mocapress.formats.rows import Body
 from mocapress.motion.clip import Clip
-from mocapress.motion.number_format import NumberFormat, NumberKind
-from mocapress.records import Reader, Writer
+from mocapress.motion.number_format import NumberFormat
 
-_MOST_TEMPLATES = 64
+MOST_TEMPLATES = 64
 _SAMPLE = 48
 
 Slot = tuple[int, int, int]
@@ -103,95 +102,20 @@ class Layout:
             raise CorruptError("the layout makes a longer file than announced")
         return self.header + body + self.tail
 
-    def first_row(self) -> bytes:
-        """Give the header and a first row whose numbers are zeros: enough to read the columns."""
-        template = self.templates[0]
-        one = Layout(
-            self.format,
-            self.header,
-            b"",
-            self.formats,
-            (template,),
-            np.zeros(1, np.int32),
-            np.ones(1 if template.counter else 0, np.int64),
-            np.empty(0, np.uint64),
-            np.empty(0, np.uint32),
-            (),
-            (),
-        )
-        return one.join(np.zeros((1, len(self.formats))))
-
-    def to_bytes(self) -> bytes:
-        """Give the layout as bytes (docs/format.md, section "Layout")."""
-        writer = Writer()
-        writer.bytes(self.header)
-        writer.bytes(self.tail)
-        _write_formats(writer, self.formats)
-        writer.integer(len(self.templates))
-        for template in self.templates:
-            _write_template(writer, template)
-        _write_runs(writer, (self.assigned + 1).tolist())
-        steps = np.diff(self.counters, prepend=0).tolist()
-        _write_runs(writer, [step << 1 if step >= 0 else (-step << 1) - 1 for step in steps])
-        writer.integer(len(self.cells))
-        last = 0
-        for row, slot, text in zip(
-            self.cell_rows.tolist(), self.cell_slots.tolist(), self.cells, strict=True
-        ):
-            writer.integer(row - last)
-            writer.integer(slot)
-            writer.bytes(text)
-            last = row
-        for row_bytes in self.raw_rows:
-            writer.bytes(row_bytes)
-        return bytes(writer.data)
-
-    @classmethod
-    def from_bytes(cls, data: bytes, kind: str, frames: int) -> "Layout":
-        """Read a layout of so many frames.
-
-        Raises
-        ------
-        CorruptError
-            When the bytes are not a layout.
-
-        """
-        reader = Reader(data, "layout")
-        header, tail = reader.bytes(), reader.bytes()
-        formats = _read_formats(reader)
-        templates = tuple(
-            _read_template(reader, len(formats)) for _ in range(reader.integer(_MOST_TEMPLATES))
-        )
-        assigned = _read_runs(reader, frames, len(templates)) - 1
-        zigzag = _read_runs(reader, frames, 2**62, may_be_empty=True)
-        counters = np.cumsum(np.where(zigzag & 1, -((zigzag + 1) >> 1), zigzag >> 1))
-        if len(counters) != frames and any(template.counter for template in templates):
-            raise reader.fail("rows without frame numbers")
-        rows, slots, texts = [], [], []
-        row = 0
-        for _ in range(reader.count(3)):
-            row += reader.integer(frames)
-            rows.append(row)
-            slots.append(reader.integer(2**32 - 1))
-            texts.append(reader.bytes())
-        if row and row >= frames:
-            raise reader.fail("a number outside the rows")
-        raw = tuple(reader.bytes() for _ in range(int((assigned < 0).sum())))
-        reader.end()
-        if not templates and len(formats):
-            raise reader.fail("no row template")
-        return cls(
-            kind,
-            header,
-            tail,
-            formats,
-            templates,
-            assigned.astype(np.int32),
-            counters.astype(np.int64),
-            np.array(rows, np.uint64),
-            np.array(slots, np.uint32),
-            tuple(texts),
-            raw,
+    def rows(self, keep: NDArray[np.bool_]) -> "Layout":
+        """Give the layout of those rows alone that are to be kept, (F,)."""
+        cells = keep[self.cell_rows.astype(np.int64)]
+        raw = keep[self.assigned < 0]
+        return replace(
+            self,
+            assigned=self.assigned[keep],
+            counters=self.counters[keep] if len(self.counters) else self.counters,
+            cell_rows=(np.cumsum(keep) - 1)[self.cell_rows[cells].astype(np.int64)].astype(
+                np.uint64
+            ),
+            cell_slots=self.cell_slots[cells],
+            cells=tuple(compress(self.cells, cells)),
+            raw_rows=tuple(compress(self.raw_rows, raw)),
         )
 
 
@@ -227,7 +151,7 @@ def build(
     templates: list[RowTemplate] = []
     assigned = np.full(frames, -1, np.int32)
     cells: list[tuple[int, int, bytes]] = []
-    while len(pending) and len(templates) < _MOST_TEMPLATES:
+    while len(pending) and len(templates) < MOST_TEMPLATES:
         first, second = row(int(pending[0])), row(int(pending[min(1, len(pending) - 1)]))
         for template in (_padded_template(first, second), _template(*first)):
             if template is None:
@@ -280,13 +204,12 @@ def print_clip(clip: Clip, header: bytes, literals: Sequence[bytes], *, counter:
         Whether each row begins with the frame's number, from 1.
 
     """
-    shortest = NumberFormat(NumberKind.SHORTEST)
     unpadded = (0,) * clip.channels
     layout = Layout(
         "",
         header,
         b"",
-        tuple(column.decimal or shortest for column in clip.columns),
+        tuple(column.decimal or SHORTEST for column in clip.columns),
         (RowTemplate(counter, tuple(literals), tuple(range(clip.channels)), unpadded),),
         np.zeros(clip.frames, np.int32),
         np.arange(1, clip.frames + 1) if counter else np.empty(0, np.int64),
@@ -333,86 +256,3 @@ def _padded_template(
 def _width(literal: bytes, slot: Slot) -> tuple[bytes, int]:
     kept = literal.rstrip(b" ")
     return kept, len(literal) - len(kept) + slot[2] - slot[1]
-
-
-def _write_formats(writer: Writer, formats: tuple[NumberFormat, ...]) -> None:
-    distinct = list(dict.fromkeys(formats))
-    writer.integer(len(formats))
-    writer.integer(len(distinct))
-    for f in distinct:
-        flags = f.point_zero | f.bare_point << 1 | f.upper << 2
-        writer.data += bytes((f.kind, f.digits, f.exponent_digits, flags))
-    _write_runs(writer, [distinct.index(f) for f in formats])
-
-
-def _read_formats(reader: Reader) -> tuple[NumberFormat, ...]:
-    columns = reader.integer(2**20)
-    distinct = []
-    for _ in range(reader.count(4)):
-        kind, digits, exponent_digits, flags = reader.raw(4)
-        if kind > 5 or digits > 40 or exponent_digits > 8 or (kind == 0 and not 1 <= digits <= 17):
-            raise reader.fail("no such number format")
-        distinct.append(
-            NumberFormat(
-                NumberKind(kind),
-                digits,
-                exponent_digits,
-                bool(flags & 1),
-                bool(flags & 2),
-                bool(flags & 4),
-            )
-        )
-    return tuple(distinct[i] for i in _read_runs(reader, columns, len(distinct) - 1).tolist())
-
-
-def _write_template(writer: Writer, template: RowTemplate) -> None:
-    writer.integer(template.counter | any(template.widths) << 1)
-    writer.integer(len(template.columns))
-    for literal in template.literals:
-        writer.bytes(literal)
-    expected = 0
-    for column in template.columns:
-        writer.signed(column - expected)
-        expected = column + 1
-    if any(template.widths):
-        writer.data += bytes(template.widths)
-
-
-def _read_template(reader: Reader, columns: int) -> RowTemplate:
-    flags = reader.integer(3)
-    counter = bool(flags & 1)
-    slots = reader.count(2)
-    literals = tuple(reader.bytes() for _ in range(slots + 1 + counter))
-    of_slots = []
-    expected = 0
-    for _ in range(slots):
-        column = expected + reader.signed()
-        if not 0 <= column < columns:
-            raise reader.fail("a number without a column")
-        of_slots.append(column)
-        expected = column + 1
-    widths = tuple(reader.raw(slots)) if flags & 2 else (0,) * slots
-    return RowTemplate(counter, literals, tuple(of_slots), widths)
-
-
-def _write_runs(writer: Writer, values: list[int]) -> None:
-    """Write equal neighbours as value and count."""
-    runs = [(value, len(list(group))) for value, group in groupby(values)]
-    writer.integer(len(runs))
-    for value, count in runs:
-        writer.integer(value)
-        writer.integer(count)
-
-
-def _read_runs(
-    reader: Reader, expected: int, most: int, *, may_be_empty: bool = False
-) -> NDArray[np.int64]:
-    values, counts = [], []
-    left = expected
-    for _ in range(reader.count(2)):
-        values.append(reader.integer(max(most, 0)))
-        counts.append(reader.integer(left))
-        left -= counts[-1]
-    if left and not (may_be_empty and not values):
-        raise reader.fail(f"{left} of {expected} entries missing")
-    return np.repeat(np.array(values, np.int64), np.array(counts, np.int64))

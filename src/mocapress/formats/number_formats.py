@@ -1,6 +1,7 @@
 """Finding the number format of every column from how its numbers are written."""
 
 from collections import Counter
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +9,12 @@ from numpy.typing import NDArray
 from mocapress import _core
 from mocapress.formats.rows import merged_statistics
 from mocapress.motion.number_format import NumberFormat, NumberKind
+from mocapress.records import Reader, Writer
+
+SHORTEST = NumberFormat(NumberKind.SHORTEST)
+"""How numbers are printed that were never text."""
+_MOST_DIGITS = 40
+_MOST_EXPONENT_DIGITS = 8
 
 
 def packed(formats: tuple[NumberFormat, ...]) -> NDArray[np.uint8]:
@@ -63,9 +70,32 @@ def _misses(ours: list[bytes], theirs: list[bytes | None]) -> int:
     return sum(b is not None and a != b for a, b in zip(ours, theirs, strict=True))
 
 
-def printed(values: NDArray[np.float64], number_format: NumberFormat) -> list[bytes]:
+def write_format(writer: Writer, f: NumberFormat) -> None:
+    """Append a format as a record (docs/format/layout.md, section "Number formats")."""
+    flags = f.point_zero | f.bare_point << 1 | f.upper << 2
+    writer.data += bytes((f.kind, f.digits, f.exponent_digits, flags))
+
+
+def read_format(reader: Reader) -> NumberFormat:
+    """Take a format."""
+    kind, digits, exponent_digits, flags = reader.raw(4)
+    if (
+        kind > max(NumberKind)
+        or digits > _MOST_DIGITS
+        or exponent_digits > _MOST_EXPONENT_DIGITS
+        or flags > 7
+        or (kind == NumberKind.GENERAL and not 1 <= digits <= 17)
+    ):
+        raise reader.fail("no such number format")
+    zero, bare, upper = bool(flags & 1), bool(flags & 2), bool(flags & 4)
+    return NumberFormat(NumberKind(kind), digits, exponent_digits, zero, bare, upper)
+
+
+def printed(
+    values: NDArray[np.float64] | Sequence[float], number_format: NumberFormat
+) -> list[bytes]:
     """Print values, (N,), in a format."""
-    column = np.ascontiguousarray(values).reshape(-1, 1)
+    column = np.array(values, np.float64).reshape(-1, 1)
     text: bytes = _core.print_rows(
         column,
         np.empty(0, np.int64),

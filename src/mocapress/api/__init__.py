@@ -1,0 +1,32 @@
+"""The Python interface: ``import mocapress as mp``."""
+
+from mocapress.api.checking import Checked, verify, verify_source
+from mocapress.api.compressing import Compressed, compress, compress_clip, compress_source
+from mocapress.api.loading import columns_of, load, load_source
+from mocapress.api.opening import Opened
+from mocapress.api.reading import printed, read, read_source, write
+from mocapress.api.recording import Recording, writer
+from mocapress.api.restoring import Restored, decompress, restore
+
+__all__ = [
+    "Checked",
+    "Compressed",
+    "Opened",
+    "Recording",
+    "Restored",
+    "columns_of",
+    "compress",
+    "compress_clip",
+    "compress_source",
+    "decompress",
+    "load",
+    "load_source",
+    "printed",
+    "read",
+    "read_source",
+    "restore",
+    "verify",
+    "verify_source",
+    "write",
+    "writer",
+]

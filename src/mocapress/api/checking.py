@@ -1,0 +1,63 @@
+"""Whether a compressed file is sound."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mocapress.api.opening import Opened
+from mocapress.api.restoring import contents
+from mocapress.container import CHANNELS, Damage, diffma_json
+from mocapress.errors import MissingModelError, MocapressError
+from mocapress.models import Place
+from mocapress.source import DIFFMA_JSON, Named, Source
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What ``verify`` found."""
+
+    raw_bytes: int
+    """Of the original file; without one, of the numbers."""
+    damage: tuple[Damage, ...]
+    """Everything that is damaged: sections, chunks, the original; nothing of a sound file."""
+
+
+def verify(source: Named, *, models: Sequence[Place] = ()) -> Checked:
+    """Read and decode all of a compressed file, and check every checksum and digest.
+
+    Parameters
+    ----------
+    source
+        A ``.mcz`` or a DiffMA JSON: a path, the contents or a binary stream.
+    models
+        Where to look for the model that the file may need, as in ``decompress``.
+
+    Raises
+    ------
+    CorruptError
+        When it is no such file, or nothing in it can be read.
+    MissingModelError
+        When the model that the file needs is nowhere.
+
+    """
+    return verify_source(Source(source), models)
+
+
+def verify_source(source: Source, models: Sequence[Place] = ()) -> Checked:
+    """Check a file; see ``verify``."""
+    if source.kind == DIFFMA_JSON:  # a layout is not needed to be sound
+        return Checked(diffma_json.json_to_clip(source.data).values.nbytes, ())
+    opened = Opened(source, models, salvage=True)
+    original, size = opened.mcz.original, 0
+    for index, head in enumerate(opened.streams):
+        if head.kind == CHANNELS:
+            size += opened.rows(index).values.nbytes
+    if original is not None:
+        size = original.size
+        try:
+            if not opened.damage:
+                contents(opened, original)
+        except MissingModelError:
+            raise
+        except MocapressError as error:
+            opened.damage.append(Damage("the original file", error))
+    return Checked(size, tuple(opened.damage))

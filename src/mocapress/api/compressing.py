@@ -1,0 +1,316 @@
+"""From motion files and clips to compressed files."""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path, PurePath
+
+from mocapress import codecs
+from mocapress.api.encoding import coded, placed, stored_skeleton
+from mocapress.api.opening import Opened
+from mocapress.api.restoring import printed
+from mocapress.codecs import DEFAULT_CODEC, Codec, Encoded, Model
+from mocapress.codecs.fallback import first_that_works
+from mocapress.codecs.loss import Loss, checked_loss
+from mocapress.container import Companion, Head, MczWriter, Original, is_storable_time, pack
+from mocapress.container.columns import bones_of
+from mocapress.errors import CorruptError, FormatError, UnsupportedError, VerificationError
+from mocapress.formats import Split
+from mocapress.formats.layout_record import write_layout
+from mocapress.formats.patterns import References
+from mocapress.models import load_model
+from mocapress.motion import Clip
+from mocapress.motion.clip import MOTION
+from mocapress.source import Named, Source
+
+# Below this size, or above this share of the original, the general-purpose way is tried as well.
+_SMALL = 2**15
+_POOR = 0.4
+
+
+@dataclass(frozen=True, slots=True)
+class Compressed:
+    """What ``compress_source`` made."""
+
+    blob: bytes
+    """The ``.mcz`` file."""
+    warning: str | None
+    """Why the numbers, or a part of them, were not compressed as motion."""
+    loss: Loss | None = None
+    """What a lossy codec lost, measured from what it decodes to; None where nothing is lost."""
+
+
+def compress(
+    source: Named | Clip,
+    codec: str | Codec = DEFAULT_CODEC,
+    *,
+    asf_path: str | Path | None = None,
+    embed_asf: bool = False,
+    model: Model | str | Path | None = None,
+    notes: Mapping[str, str] | None = None,
+) -> bytes:
+    """Compress a file, its bytes, or a clip to a ``.mcz``.
+
+    Parameters
+    ----------
+    source
+        A path, the contents, or a binary stream, of a motion file or any other; or a clip, of
+        which all streams, the skeleton, name and metadata are kept.
+    codec
+        A codec or its text, ``"app:t=15,table=k3-non-uniform"``.
+    asf_path
+        The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
+    embed_asf
+        Whether to store the skeleton of an AMC, too, and its file.
+    model
+        What the codec learned from other clips (``train``), or its file. Decompressing needs it
+        again.
+    notes
+        What to say about the file in it, such as ``source`` and ``license``.
+
+    Returns
+    -------
+    bytes
+        The ``.mcz`` file; it was decoded again and compared with the source. Where a codec fails,
+        another way is taken; ``compress_source`` says so.
+
+    Raises
+    ------
+    ParameterError
+        When there is no such codec, or it has no such parameter, or the model is not for it.
+    FormatError
+        When the ASF that was given cannot be read.
+    UnsupportedError
+        When a clip holds what a file cannot.
+    VerificationError
+        When the codec fails at a clip.
+
+    """
+    if model is not None and not isinstance(model, Model):
+        model = load_model(model)
+    if isinstance(source, Clip):
+        return compress_clip(source, codec, model=model, notes=notes).blob
+    return compress_source(
+        Source(source), codec, asf_path=asf_path, embed_asf=embed_asf, model=model, notes=notes
+    ).blob
+
+
+def compress_source(
+    source: Source,
+    codec: str | Codec = DEFAULT_CODEC,
+    *,
+    asf_path: str | Path | None = None,
+    embed_asf: bool = False,
+    model: Model | None = None,
+    notes: Mapping[str, str] | None = None,
+) -> Compressed:
+    """Compress a file; see ``compress``."""
+    made = _codec(codec, model)
+    data = source.data
+    blob, warning, loss = None, None, None
+    if source.format is None:
+        warning = "not a motion file; stored by a general-purpose compressor"
+    elif source.format.split:
+        try:
+            parts = source.split(asf_path)
+        except FormatError as error:
+            if asf_path is not None and error.file == str(asf_path):
+                raise
+            warning = f"{error}; stored by a general-purpose compressor"
+        else:
+            embed = embed_asf and source.used is not None
+            if embed:
+                source.warn_of_guess()
+            blob, warning, loss = _compress_motion(source, parts, made, embed, model, notes or {})
+    if blob is None or len(data) < _SMALL or len(blob) > _POOR * len(data):
+        plain = _compress_plain(source, notes or {})
+        if blob is None or len(plain) < len(blob):
+            blob, loss = plain, None
+    return Compressed(blob, warning, loss)
+
+
+def compress_clip(
+    clip: Clip,
+    codec: str | Codec = DEFAULT_CODEC,
+    *,
+    model: Model | None = None,
+    notes: Mapping[str, str] | None = None,
+) -> Compressed:
+    """Compress a clip; see ``compress``. The model is for its first stream."""
+    made = _codec(codec, model)
+    skeleton = stored_skeleton(clip)
+    heads, chunks = [], []
+    for index, (name, stream) in enumerate(clip.streams.items()):
+        if not is_storable_time(stream.frame_time):
+            raise UnsupportedError("frame time", found=str(stream.frame_time))
+        alone, own = Clip({name: stream}, clip.skeleton), model if index == 0 else None
+        head, of_stream = coded(
+            alone, name, index, made, made.encode(stream, skeleton=clip.skeleton, model=own), own
+        )
+        heads.append(head)
+        chunks += of_stream
+    said = {**({"name": clip.name} if clip.name else {}), **clip.metadata, **(notes or {})}
+    parts: list[bytes] = []
+    writer = MczWriter(parts.append)
+    writer.head(Head(tuple(heads), skeleton))
+    if said:
+        writer.notes(said)
+    for chunk in chunks:
+        writer.chunk(chunk)
+    writer.end()
+    blob = b"".join(parts)
+    opened = Opened(Source(blob), [model] if model else [])
+    loss = None
+    for index, (name, stream) in enumerate(clip.streams.items()):
+        rows = opened.rows(index).values
+        if not made.lossless:
+            alone = Clip({name: stream})
+            found = checked_loss(made, alone, rows)
+            loss = loss or found
+        elif rows.tobytes() != stream.values.tobytes():
+            raise VerificationError(f"codec {made.id} does not give back stream {name!r}")
+    return Compressed(blob, None, loss)
+
+
+def _codec(codec: str | Codec, model: Model | None) -> Codec:
+    made = codecs.codec(codec) if isinstance(codec, str) else codec
+    if model is not None:
+        codecs.learner(made, model)
+    return made
+
+
+def _compress_motion(
+    source: Source,
+    parts: Split,
+    codec: Codec,
+    embed: bool,
+    model: Model | None,
+    notes: Mapping[str, str],
+) -> tuple[bytes | None, str | None, Loss | None]:
+    clip, layout, problems = parts
+    data, file = source.data, source.name or None
+    warning = "; ".join(str(problem.error(file)) for problem in problems) or None
+    irregular = layout.verbatim_bytes() + len(layout.tail) > len(data) / 2
+    if not clip.frames or irregular or not is_storable_time(clip.frame_time):
+        reason = "numbers in no regular form" if clip.frames else "no frames"
+        return None, warning or f"{reason}; stored by a general-purpose compressor", None
+    embedded = _companions(source) if embed else []
+    # The skeleton of another file is stored only where that was asked for.
+    with_skeleton = embed or source.used is None
+
+    def work(way: Codec) -> tuple[bytes, Loss | None]:
+        own = model if way is codec else None
+        encoded = way.encode(clip.main, skeleton=clip.skeleton, model=own)
+        blob = motion_file(
+            parts,
+            data,
+            _name(source.name),
+            way,
+            encoded,
+            own,
+            with_skeleton=with_skeleton,
+            companions=embedded,
+            notes=notes,
+        )
+        return blob, _check(blob, data, way, clip, own)
+
+    found, failure = first_that_works(codec, work)
+    blob, loss = found or (None, None)
+    return blob, "; ".join(filter(None, (failure, warning))) or None, loss
+
+
+def motion_file(
+    parts: Split,
+    data: bytes,
+    name: str,
+    codec: Codec,
+    encoded: Encoded,
+    model: Model | None = None,
+    *,
+    with_skeleton: bool = True,
+    companions: Sequence[Companion] = (),
+    notes: Mapping[str, str] | None = None,
+) -> bytes:
+    """Put a file together from a motion file's parts, and what a codec made of its numbers.
+
+    Parameters
+    ----------
+    parts, data, name
+        The motion file taken apart, its contents, and its name without folders.
+    codec, encoded, model
+        The codec, what it made of the clip, and with what model.
+    with_skeleton
+        Whether the clip's skeleton is stored.
+    companions, notes
+        What else is stored.
+
+    """
+    clip, layout, problems = parts
+    skeleton = stored_skeleton(clip) if with_skeleton else None
+    columns = clip.columns if skeleton else placed(clip.columns)
+    bones = [bone.name for bone in bones_of(columns) for _ in range(bone.columns)]
+    references = References.of(skeleton, bones, clip.frame_time)
+    original = Original(
+        layout.format,
+        name,
+        len(data),
+        hashlib.sha256(data).digest(),
+        problems,
+        pack(write_layout(layout, references)),
+    )
+    head, chunks = coded(clip, MOTION, 0, codec, encoded, model)
+    made: list[bytes] = []
+    writer = MczWriter(made.append)
+    writer.head(Head((replace(head, columns=columns),), skeleton))
+    writer.original(original)
+    for companion in companions:
+        writer.companion(companion)
+    if notes:
+        writer.notes(notes)
+    for chunk in chunks:
+        writer.chunk(chunk)
+    writer.end()
+    return b"".join(made)
+
+
+def _name(path: str) -> str:
+    """Give a file's name without folders; what is no UTF-8 in it is replaced."""
+    return PurePath(path).name.encode(errors="surrogateescape").decode(errors="replace")
+
+
+def _companions(source: Source) -> list[Companion]:
+    used = source.used
+    of = source.format
+    if used is None or of is None or of.companion is None:
+        return []
+    return [Companion(of.companion, _name(used.file), used.read())]
+
+
+def _check(blob: bytes, data: bytes, codec: Codec, clip: Clip, model: Model | None) -> Loss | None:
+    """Decode a file and compare: bytes of a lossless codec, else values."""
+    failure = "the file does not come back"
+    try:
+        opened = Opened(Source(blob), [model] if model else [])
+        rows = opened.rows()
+        original = opened.mcz.original
+        assert original is not None
+        restored = printed(opened, original, rows)
+        if not codec.lossless:
+            return checked_loss(codec, clip, rows.values)
+        if restored == data:
+            return None
+    except CorruptError as error:
+        failure = error.what
+    raise VerificationError(f"codec {codec.id} failed its check ({failure}); please report this")
+
+
+def _compress_plain(source: Source, notes: Mapping[str, str]) -> bytes:
+    data = source.data
+    name, digest = _name(source.name), hashlib.sha256(data).digest()
+    parts: list[bytes] = []
+    writer = MczWriter(parts.append)
+    writer.original(Original("", name, len(data), digest, (), pack(data)))
+    if notes:
+        writer.notes(notes)
+    writer.end()
+    return b"".join(parts)

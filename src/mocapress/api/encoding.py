@@ -1,0 +1,94 @@
+"""From the numbers of a clip to the head and the chunks of a file."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress import codecs
+from mocapress.api.opening import decoded, digest
+from mocapress.codecs import Codec, Encoded, Model
+from mocapress.container import CodecSpec, CodedChunk, Entry, StreamHead, is_storable
+from mocapress.errors import UnsupportedError
+from mocapress.motion import Clip, Column, Skeleton, Stream
+
+
+def stream_head(name: str, stream: Stream, codec: Codec, *, frames: int | None) -> StreamHead:
+    """Give what a file says about a stream, but for what its codec adds."""
+    spec = CodecSpec(codec.id, codecs.parameters(codec))
+    return StreamHead(name, frames, stream.frame_time, stream.columns, spec)
+
+
+def coded(
+    clip: Clip, name: str, index: int, codec: Codec, encoded: Encoded, model: Model | None
+) -> tuple[StreamHead, list[CodedChunk]]:
+    """Give what a file holds of the first stream of a clip: its stream ``index``, ``name``."""
+    head = replace(
+        stream_head(name, clip.main, codec, frames=clip.frames),
+        model=model.digest if model else b"",
+        header=encoded.header,
+    )
+    return head, coded_chunks(clip, head, index, codec, encoded, model)
+
+
+def coded_chunks(
+    clip: Clip,
+    head: StreamHead,
+    index: int,
+    codec: Codec,
+    encoded: Encoded,
+    model: Model | None,
+    *,
+    first: int = 0,
+    own_header: bool = False,
+) -> list[CodedChunk]:
+    """Give chunks as a file holds them: with the digests of what they decode to.
+
+    Parameters
+    ----------
+    clip, encoded
+        Frames, and what the codec made of them.
+    head, index
+        Of the stream that they belong to.
+    codec, model
+        What they were coded with.
+    first
+        In the stream, of the clip's first frame.
+    own_header
+        Whether each chunk is to carry the codec header.
+
+    """
+    values: NDArray[np.float64] = clip.values
+    if not codec.lossless and encoded.chunks:
+        values = decoded(codec, encoded.header, encoded.chunks, head, model, clip.frames)
+    chunks = []
+    for chunk in encoded.chunks:
+        rows = values[chunk.first : chunk.first + chunk.frames]
+        begin, dependent = first + chunk.first, bool(chunk.needs)
+        entry = Entry(index, begin, chunk.frames, chunk.restart, own_header, dependent, 0, 0)
+        header = encoded.header if own_header else b""
+        chunks.append(CodedChunk(entry, digest(rows), header, chunk.payload, chunk.needs))
+    return chunks
+
+
+def placed(columns: Sequence[Column]) -> tuple[Column, ...]:
+    """Give columns whose joints are numbered in the order of appearance."""
+    places: dict[int, int] = {}
+    return tuple(
+        replace(column, joint=places.setdefault(column.joint, len(places))) for column in columns
+    )
+
+
+def stored_skeleton(clip: Clip) -> Skeleton | None:
+    """Give a clip's skeleton as far as a file can hold it.
+
+    Raises
+    ------
+    UnsupportedError
+        When it cannot.
+
+    """
+    if clip.skeleton is not None and not is_storable(clip.skeleton):
+        raise UnsupportedError("a skeleton with channels of unknown kinds cannot be stored")
+    return clip.skeleton

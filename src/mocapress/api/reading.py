@@ -1,0 +1,130 @@
+"""Motion files to clips and back."""
+
+from pathlib import Path
+
+from mocapress import formats
+from mocapress.container import diffma_json
+from mocapress.errors import UnsupportedError
+from mocapress.formats import Format
+from mocapress.motion import Clip
+from mocapress.motion.convert import with_rate
+from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, Named, Source
+from mocapress.source import read as read_motion
+from mocapress.storage import ExistsError, write_all, write_whole
+
+
+def read(source: Named, *, asf_path: str | Path | None = None, strict: bool = True) -> Clip:
+    """Read a motion file: of any format, or DiffMA JSON.
+
+    Parameters
+    ----------
+    source
+        A path, the contents, or a binary stream. A skeleton alone (ASF) gives a clip without
+        frames.
+    asf_path
+        The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one:
+        that of the same name, of the subject, or the only one in the folder, which is warned of.
+        ``metadata`` of the clip says which one was used (``skeleton``) and how it was found
+        (``skeleton_found``). One that is broken or does not fit is left away with a warning.
+    strict
+        Whether a file that has lost frames is refused: one with fewer rows than it declares, or
+        with rows that cannot be read. With ``strict=False`` it is read as far as possible, with a
+        ``MotionWarning``; a row that cannot be read between others keeps the values of the one
+        before. What loses nothing, such as a row more than declared, always is a warning.
+
+    Raises
+    ------
+    FormatError
+        When the file does not follow its format, or the given ASF cannot be read or is another's:
+        with file, place, expected and found.
+    OSError
+        When it cannot be opened.
+
+    """
+    return read_source(Source(source), asf_path, strict=strict)
+
+
+def read_source(source: Source, asf_path: str | Path | None = None, *, strict: bool = True) -> Clip:
+    """Read a motion file; see ``read``."""
+    if source.kind == DIFFMA_JSON:
+        return diffma_json.json_to_clip(source.data)
+    return read_motion(source, asf_path, strict=strict)
+
+
+def write(
+    clip: Clip,
+    path: str | Path,
+    *,
+    to: str | None = None,
+    fps: float | None = None,
+    force: bool = False,
+) -> None:
+    """Write a clip to a motion file, or as DiffMA JSON.
+
+    The clip is converted to what the format can hold. What belongs beside the file is written,
+    too: the skeleton of an AMC as an ASF of the same name.
+
+    Parameters
+    ----------
+    clip
+        With a skeleton, except for formats that need none.
+    path
+        Its ending names the format.
+    to
+        Id of the format, whatever the ending.
+    fps
+        Frames per second, instead of those of the clip. A BVH has to state its frame time: where
+        neither the clip nor ``fps`` says it, 120 are assumed, with a ``MotionWarning``.
+    force
+        Whether to replace existing files.
+
+    Raises
+    ------
+    ParameterError
+        When ``fps`` is no number above 0.
+    ExistsError
+        When a file exists and ``force`` is not given.
+    UnsupportedError
+        When there is no such format to write in, or the clip lacks what it needs.
+
+    """
+    path = Path(path)
+    if to is None and path.name.lower().endswith(JSON_SUFFIXES):
+        clip = with_rate(clip, fps)
+        write_whole(path, diffma_json.named(path.name, diffma_json.to_json(clip)), force=force)
+        return
+    of = formats.by_id(to) if to else formats.by_name(path.name)
+    if of is None:
+        known = formats.listed(formats.writable())
+        raise UnsupportedError("no format for clips", expected=known, found=repr(path.suffix))
+    write_all(printed(with_rate(clip, fps, needed=of.timed), of, path), force=force)
+
+
+def printed(clip: Clip, of: Format, path: Path) -> dict[Path, bytes]:
+    """Print a clip in a format: contents by path, of the file itself first.
+
+    Raises
+    ------
+    ExistsError
+        When something else lies where the skeleton would go, and no file of this name beside it:
+        then it is not a skeleton that came with this file, but one of others.
+    UnsupportedError
+        When the clip lacks what the format needs.
+
+    """
+    if of.write is None:
+        known = formats.listed(formats.writable())
+        raise UnsupportedError("no format for clips", expected=known, found=of.name)
+    (_, data), *companions = of.write(of.fit(clip)).items()
+    files = {path: data}
+    for suffix, contents in companions:
+        place = path.with_suffix(suffix)
+        if not place.exists() or path.exists():
+            files[place] = contents
+        elif place.read_bytes() != contents:
+            raise ExistsError(
+                f"file exists and did not come with {path.name}",
+                file=str(place),
+                expected="another name for the output, or this file elsewhere",
+            )
+    return files

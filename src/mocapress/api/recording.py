@@ -1,0 +1,219 @@
+"""Writing a ``.mcz`` while a capture runs."""
+
+import os
+from collections.abc import Mapping, Sequence
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mocapress import codecs
+from mocapress.api.encoding import coded_chunks, stored_skeleton, stream_head
+from mocapress.api.opening import decoded
+from mocapress.codecs import DEFAULT_CODEC, Codec
+from mocapress.container import Head, MczWriter
+from mocapress.container.limits import most_values
+from mocapress.errors import ParameterError, UnsupportedError, VerificationError
+from mocapress.motion import Clip, Column, Skeleton, Stream
+from mocapress.motion.clip import MOTION
+from mocapress.storage import ExistsError
+
+_USUAL_CHUNK = 512
+
+
+class Recording:
+    """A ``.mcz`` that grows; see ``writer``."""
+
+    def __init__(
+        self,
+        path: str | Path,
+        clip: Clip,
+        codec: Codec,
+        notes: Mapping[str, str],
+    ) -> None:
+        self._clip, self._codec = clip, codec
+        self._name = next(iter(clip.streams))
+        self._most = getattr(codec, "chunk", _USUAL_CHUNK)
+        self._waiting: list[NDArray[np.float64]] = []
+        self._held = 0
+        self.frames = 0
+        """Frames that are in the file."""
+        try:
+            self._file: int | None = os.open(
+                path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666
+            )
+        except FileExistsError:
+            raise ExistsError("file exists; a recording needs a new one", file=str(path)) from None
+        self._mcz = MczWriter(self._put)
+        self._head = stream_head(self._name, clip.main, codec, frames=None)
+        self._mcz.head(Head((self._head,), stored_skeleton(clip)))
+        if notes:
+            self._mcz.notes(notes)
+        self._sync()
+
+    def append(self, rows: ArrayLike) -> None:
+        """Add frames; every chunk that they complete is on the disk when this returns.
+
+        Parameters
+        ----------
+        rows
+            (n, C), or (C,) for one frame.
+
+        Raises
+        ------
+        ParameterError
+            When they have another number of channels, or the recording is closed.
+        OSError
+            When they cannot be written.
+
+        """
+        values = np.atleast_2d(np.array(rows, np.float64))
+        if values.ndim != 2 or values.shape[1] != self._clip.channels:
+            raise ParameterError(
+                "rows", expected=f"(n, {self._clip.channels})", found=str(values.shape)
+            )
+        if self._file is None:
+            raise ParameterError("the recording is closed")
+        self._waiting.append(values)
+        self._held += len(values)
+        if self._held >= self._most:
+            self._write(self._held - self._held % self._most)
+
+    def flush(self) -> None:
+        """Put on the disk what was appended, though it does not fill a chunk."""
+        if self._held:
+            self._write(self._held)
+
+    def close(self) -> None:
+        """Write what is left, and the file's end. Closing twice does nothing."""
+        if self._file is None:
+            return
+        try:
+            self.flush()
+            self._mcz.end()
+            self._sync()
+        finally:
+            os.close(self._file)
+            self._file = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _write(self, count: int) -> None:
+        """Write so many of the frames that wait."""
+        rows = np.concatenate(self._waiting)
+        for begin in range(0, count, self._most):
+            self._write_chunk(rows[begin : min(begin + self._most, count)])
+            self._waiting = [rows[begin + self._most :]]
+            self._held = len(self._waiting[0])
+
+    def _write_chunk(self, rows: NDArray[np.float64]) -> None:
+        clip = self._clip.with_frames(rows, self._clip.frame_time)
+        encoded = self._codec.encode(clip.main, skeleton=clip.skeleton)
+        if self._codec.lossless:
+            back = decoded(self._codec, encoded.header, encoded.chunks, self._head, None, len(rows))
+            if back.tobytes() != rows.tobytes():
+                raise VerificationError(f"codec {self._codec.id} does not give back the frames")
+        if (self.frames + len(rows)) * max(clip.channels, 1) > most_values(self._mcz.length):
+            raise UnsupportedError("more frames than a file of this size may hold")
+        for chunk in coded_chunks(
+            clip,
+            self._head,
+            0,
+            self._codec,
+            encoded,
+            None,
+            first=self.frames,
+            own_header=True,
+        ):
+            self._mcz.chunk(chunk)
+        self._sync()
+        self.frames += len(rows)
+
+    def _put(self, data: bytes) -> None:
+        assert self._file is not None
+        left = memoryview(data)
+        while left:
+            left = left[os.write(self._file, left) :]
+
+    def _sync(self) -> None:
+        assert self._file is not None
+        os.fsync(self._file)
+
+
+def writer(
+    path: str | Path,
+    columns: Sequence[Column | str],
+    rate: float | Fraction | Decimal | None,
+    skeleton: Skeleton | None = None,
+    *,
+    codec: str | Codec = DEFAULT_CODEC,
+    name: str = MOTION,
+    notes: Mapping[str, str] | None = None,
+) -> Recording:
+    """Open a ``.mcz`` that is written while a capture runs.
+
+    >>> with mp.writer("take.mcz", ["root.tx", "root.ty"], rate=120) as recording:
+    ...     recording.append([[0.0, 90.5], [0.1, 90.4]])
+
+    A chunk is on the disk as soon as its frames are complete (``chunk`` of the codec). When the
+    process is killed, the file opens with all chunks up to the last whole one.
+
+    Parameters
+    ----------
+    path
+        Must not exist.
+    columns
+        The channels; a text is a column's name, ``joint.kind``.
+    rate
+        Frames per second; None where it is not known. A float counts as the decimal that it prints
+        as.
+    skeleton
+        Whose joints the columns move.
+    codec
+        A codec or its text.
+    name
+        Of the stream.
+    notes
+        What to say about the file in it.
+
+    Raises
+    ------
+    ExistsError
+        When the file exists.
+    OSError
+        When it cannot be written.
+
+    """
+    frame_time = None
+    if rate is not None:
+        exact = Fraction(str(rate)) if isinstance(rate, float) else Fraction(rate)
+        if exact <= 0:
+            raise ParameterError("rate", expected="a number above 0", found=str(rate))
+        frame_time = 1 / exact
+    made = codecs.codec(codec) if isinstance(codec, str) else codec
+    joints: dict[str, int] = {}
+    named = tuple(
+        column if isinstance(column, Column) else _column(column, joints) for column in columns
+    )
+    stream = Stream(np.empty((0, len(named))), named, frame_time)
+    return Recording(path, Clip({name: stream}, skeleton), made, notes or {})
+
+
+def _column(name: str, joints: dict[str, int]) -> Column:
+    """Make a column of its name; joints are numbered in the order of appearance."""
+    joint, _, kind = name.rpartition(".")
+    unit = {"r": "deg", "t": "length"}.get(kind[:1], "") if len(kind) == 2 else ""
+    return Column(name, joints.setdefault(joint, len(joints)), kind, unit)

@@ -1,0 +1,132 @@
+"""From compressed files back to the original files."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from mocapress.api.opening import Opened, Rows
+from mocapress.container import Companion, Damage, Original, StreamHead, diffma_json, limits
+from mocapress.errors import CorruptError, UnsupportedError
+from mocapress.formats.layout import Layout
+from mocapress.formats.layout_record import read_layout
+from mocapress.formats.number_formats import SHORTEST
+from mocapress.formats.patterns import References
+from mocapress.models import Place
+from mocapress.source import DIFFMA_JSON, Named, Source
+
+
+@dataclass(frozen=True, slots=True)
+class Restored:
+    """What came out of a compressed file."""
+
+    data: bytes
+    """The original file."""
+    format: str
+    """Id of its format; empty where it is no motion file."""
+    name: str = ""
+    """Its name, without folders, as far as known."""
+    companions: tuple[Companion, ...] = ()
+    """Other files that belong to it, such as the ASF of an AMC."""
+    damage: tuple[Damage, ...] = field(default=())
+    """What is lost of it."""
+
+
+def decompress(
+    source: Named | Source, *, models: Sequence[Place] = (), salvage: bool = False
+) -> bytes:
+    """Give the original file's bytes (for a lossy codec: the decoded values in its layout).
+
+    Parameters
+    ----------
+    source
+        A ``.mcz`` or a DiffMA JSON, packed or not: a path, the contents or a binary stream.
+    models
+        Where to look for the model that the file may need: models, their files, or folders of
+        them; then beside the file, then in the folders that ``MOCAPRESS_MODELS`` names.
+    salvage
+        Whether to give what is left of a damaged file: rows that cannot be decoded are left out,
+        and a ``MotionWarning`` names each loss.
+
+    Raises
+    ------
+    CorruptError
+        When the file is damaged; also when what was decoded is not what its digest says.
+    MissingModelError
+        When the model that the file needs is nowhere.
+    UnsupportedError
+        When there is no original file: the ``.mcz`` was recorded, or made of a clip.
+
+    """
+    opened = source if isinstance(source, Source) else Source(source)
+    return restore(opened, models, salvage=salvage).data
+
+
+def restore(source: Source, models: Sequence[Place] = (), *, salvage: bool = False) -> Restored:
+    """Restore a file; see ``decompress``."""
+    if source.kind == DIFFMA_JSON:
+        kind, data = diffma_json.json_to_file(source.data)
+        return Restored(data, kind)
+    opened = Opened(source, models, salvage=salvage)
+    original = opened.mcz.original
+    if original is None:
+        if opened.damage:
+            raise CorruptError("the section with the file's layout is damaged")
+        raise UnsupportedError(
+            "there is no original file in this recording",
+            file=source.name or None,
+            expected="mocapress convert, or load and write",
+        )
+    data = contents(opened, original)
+    opened.warn_of_losses()
+    return Restored(
+        data, original.format, original.name, tuple(opened.mcz.companions), tuple(opened.damage)
+    )
+
+
+def contents(opened: Opened, original: Original) -> bytes:
+    """Give the original file's bytes, and see that they are these."""
+    if not original.format:
+        data, lossless = original.contents(), True
+    else:
+        data = printed(opened, original, opened.rows())
+        lossless = opened.codec().lossless and not opened.damage
+    found = hashlib.sha256(data).digest()
+    if lossless and found != original.digest:
+        raise CorruptError(
+            "wrong digest of the contents", expected=original.digest.hex(), found=found.hex()
+        )
+    return data
+
+
+def printed(opened: Opened, original: Original, rows: Rows) -> bytes:
+    """Print decoded rows in the original's layout; lost rows are left out."""
+    size = original.size
+    most = size
+    if not opened.codec().lossless:
+        most = limits.most_printed(size, rows.values.size)
+    keep = None if rows.kept.all() else rows.kept
+    layout = layout_of(opened, original, len(rows.values) if keep is None else int(keep.sum()))
+    if keep is None:
+        return layout.join(rows.values, most)
+    return layout.rows(keep).join(rows.values[keep], most)
+
+
+def layout_of(opened: Opened, original: Original, rows: int) -> Layout:
+    """Read the layout, its header for so many rows."""
+    stream = opened.streams[0]
+    return read_layout(
+        original.layout(),
+        original.format,
+        opened.mcz.frames(),
+        tuple(column.decimal or SHORTEST for column in stream.columns),
+        references(opened, stream),
+        limits.most_layout(original.size),
+        rows,
+    )
+
+
+def references(opened: Opened, stream: StreamHead) -> References:
+    """Give what a layout may refer to."""
+    skeleton = opened.mcz.head.skeleton if opened.mcz.head else None
+    bones = [bone.name for bone in stream.bones for _ in range(bone.columns)]
+    return References.of(skeleton, bones, stream.frame_time)

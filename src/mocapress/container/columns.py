@@ -1,0 +1,161 @@
+"""The columns of a stream as a record: docs/format.md, section "Stream"."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import groupby
+from typing import NamedTuple
+
+from mocapress.container import limits
+from mocapress.formats.number_formats import read_format, write_format
+from mocapress.motion.clip import Column
+from mocapress.motion.skeleton import Skeleton
+from mocapress.records import Reader, Writer
+
+_SKELETON, _BONES, _ONE_BY_ONE = range(3)
+
+
+class Bone(NamedTuple):
+    """Successive columns of one joint."""
+
+    name: str
+    columns: int
+    joint: int
+
+
+class Columns(NamedTuple):
+    """The columns of a stream, and the names by which its source calls their bones."""
+
+    columns: tuple[Column, ...]
+    bones: tuple[Bone, ...]
+    """Empty where columns are told one by one."""
+
+
+def write_columns(writer: Writer, columns: Sequence[Column], skeleton: Skeleton | None) -> None:
+    """Append columns in the shortest form that gives them."""
+    plain = tuple(replace(column, decimal=None) for column in columns)
+    bones = bones_of(columns)
+    writer.integer(len(columns))
+    if skeleton and _skeleton_columns(skeleton).columns == plain:
+        writer.integer(_SKELETON)
+    elif bones:
+        writer.integer(_BONES)
+        writer.integer(len(bones))
+        expected = 0
+        for bone in bones:
+            writer.text(bone.name)
+            writer.integer(bone.columns)
+            writer.signed(bone.joint - expected)
+            expected = bone.joint + 1
+        _write_kinds(writer, columns)
+    else:
+        writer.integer(_ONE_BY_ONE)
+        for column in columns:
+            writer.text(column.name)
+        writer.runs([column.joint + 1 for column in columns])
+        _write_kinds(writer, columns)
+    formats = list(dict.fromkeys(column.decimal for column in columns if column.decimal))
+    writer.integer(len(formats))
+    for number_format in formats:
+        write_format(writer, number_format)
+    places = {None: 0} | {number_format: i + 1 for i, number_format in enumerate(formats)}
+    writer.runs([places[column.decimal] for column in columns])
+
+
+def read_columns(reader: Reader, skeleton: Skeleton | None) -> Columns:
+    """Take columns."""
+    count = reader.integer(limits.COLUMNS)
+    form = reader.integer(_ONE_BY_ONE)
+    if form == _SKELETON:
+        found = _skeleton_columns(skeleton) if skeleton else Columns((), ())
+        if len(found.columns) != count:
+            raise reader.fail(f"{count} columns of {len(found.columns)} channels")
+    elif form == _BONES:
+        bones = _read_bones(reader, count)
+        found = Columns(_columns_of(bones, *_read_kinds(reader, count)), bones)
+    else:
+        names = [reader.text() for _ in range(count)]
+        joints = reader.runs(count, limits.JOINTS).tolist()
+        kinds, units = _read_kinds(reader, count)
+        rows = zip(names, joints, kinds, units, strict=True)
+        found = Columns(
+            tuple(Column(n, joint - 1, kind, unit) for n, joint, kind, unit in rows), ()
+        )
+    joints = len(skeleton.joints) if skeleton else limits.JOINTS
+    if any(not -1 <= column.joint < joints for column in found.columns):
+        raise reader.fail("a column of no joint")
+    formats = [None, *(read_format(reader) for _ in range(reader.count(4)))]
+    places = reader.runs(count, len(formats) - 1).tolist()
+    columns = (
+        Column(column.name, column.joint, column.kind, column.unit, formats[place])
+        for column, place in zip(found.columns, places, strict=True)
+    )
+    return Columns(tuple(columns), found.bones)
+
+
+def bones_of(columns: Sequence[Column]) -> tuple[Bone, ...]:
+    """Give the bones of columns; nothing where their names do not come from bones."""
+    bones = []
+    seen: dict[str, int] = {}
+    groups = groupby(
+        columns, lambda column: (column.joint, column.name.removesuffix(f".{column.kind}"))
+    )
+    for (joint, label), group in groups:
+        base, hash_, number = label.rpartition("#")
+        again = hash_ and base in seen and number == str(seen[base] + 1)
+        name = base if again else label
+        seen[name] = seen.get(name, 0) + 1
+        bones.append(Bone(name, sum(1 for _ in group), joint))
+    kinds = [column.kind for column in columns]
+    units = [column.unit for column in columns]
+    made = _columns_of(bones, kinds, units)
+    same = all(a.name == b.name for a, b in zip(made, columns, strict=True))
+    return tuple(bones) if same else ()
+
+
+def _skeleton_columns(skeleton: Skeleton) -> Columns:
+    moved = [(index, joint) for index, joint in enumerate(skeleton.joints) if joint.channels]
+    bones = tuple(Bone(joint.name, len(joint.channels), index) for index, joint in moved)
+    kinds = [kind for _, joint in moved for kind in joint.channels]
+    units = [skeleton.angle_unit if kind[0] == "r" else "length" for kind in kinds]
+    return Columns(_columns_of(bones, kinds, units), bones)
+
+
+def _columns_of(
+    bones: Sequence[Bone], kinds: Sequence[str], units: Sequence[str]
+) -> tuple[Column, ...]:
+    columns: list[Column] = []
+    seen: dict[str, int] = {}
+    for bone in bones:
+        nth = seen[bone.name] = seen.get(bone.name, 0) + 1
+        label = bone.name if nth == 1 else f"{bone.name}#{nth}"
+        for _ in range(bone.columns):
+            kind = kinds[len(columns)]
+            columns.append(Column(f"{label}.{kind}", bone.joint, kind, units[len(columns)]))
+    return tuple(columns)
+
+
+def _read_bones(reader: Reader, columns: int) -> tuple[Bone, ...]:
+    bones = []
+    expected = 0
+    left = columns
+    for _ in range(reader.integer(columns)):
+        name, count = reader.text(), reader.integer(left)
+        joint = expected + reader.signed()
+        if count == 0:
+            raise reader.fail("a bone without columns")
+        bones.append(Bone(name, count, joint))
+        expected = joint + 1
+        left -= count
+    if left:
+        raise reader.fail(f"{left} columns of no bone")
+    return tuple(bones)
+
+
+def _write_kinds(writer: Writer, columns: Sequence[Column]) -> None:
+    for column in columns:
+        writer.text(column.kind)
+    writer.text_runs(column.unit for column in columns)
+
+
+def _read_kinds(reader: Reader, count: int) -> tuple[list[str], list[str]]:
+    return [reader.text() for _ in range(count)], reader.text_runs(count)

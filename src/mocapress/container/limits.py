@@ -1,0 +1,51 @@
+"""What a reader refuses, because no writer makes it: docs/format.md, section "Limits".
+
+Nothing is allocated because a file announces it, before these hold.
+"""
+
+from mocapress.errors import CorruptError
+
+STREAMS = 2**8
+PARAMETERS = 2**6
+JOINTS = 2**16
+COLUMNS = 2**20
+PROBLEMS = 1000
+UNPACKED = 2**26
+"""Bytes of a head, or of notes."""
+
+
+def most_values(length: int) -> int:
+    """Give how many numbers a file of so many bytes may hold."""
+    return 2**24 + 2**12 * length
+
+
+def most_original(length: int) -> int:
+    """Give how large a file may be that is packed in one of so many bytes."""
+    return 2**28 + 2**14 * length
+
+
+def most_layout(size: int) -> int:
+    """Give how large the layout of a file of so many bytes may be."""
+    return 2 * size + 2**20
+
+
+def most_printed(size: int, values: int) -> int:
+    """Give how large a file may become when so many decoded numbers are printed in its layout."""
+    return size + 32 * values + 2**16
+
+
+def check_values(values: int, length: int) -> None:
+    """See that a file of so many bytes may hold so many numbers.
+
+    Raises
+    ------
+    CorruptError
+        When it may not.
+
+    """
+    if values > most_values(length):
+        raise CorruptError(
+            "too many numbers announced",
+            expected=f"at most {most_values(length)} in {length} bytes",
+            found=str(values),
+        )
