@@ -4,37 +4,52 @@ CXX ?= g++
 VENV := .venv
 BIN := $(VENV)/bin
 CORPUS_SOURCE := ../shared/data
-SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined -fno-sanitize-recover=all -Icore
+SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -Icore
 FUZZ_RUNS ?= 100000
 sources := $(wildcard core/*/*.cpp core/*/*.hpp)
 headers := $(filter %.hpp,$(sources)) $(wildcard core/exact/data/*)
 kernels := $(filter-out core/python/% core/check/% core/fuzz/%,$(filter %.cpp,$(sources)))
 
-.PHONY: demo test check tests test-js browser sanitize fuzz bench wheel clean
+.PHONY: demo test long check stub tests test-js browser sanitize fuzz bench wheel clean
 
 demo: $(VENV)/.installed
 	@PYTHONPATH=benchmarks $(BIN)/python -m mocapress_bench demo
 
 test: check sanitize test-js tests
 
+# What takes too long for every test run: 1,000 kills at random moments, then one before every call.
+long: $(VENV)/.built corpus
+	$(BIN)/python tests/campaigns/kills.py --runs 1000 \
+	    $(if $(wildcard corpus/.version),--corpus corpus) --every-call
+
 check: $(VENV)/.built
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
-	$(BIN)/clang-format --dry-run --Werror $(sources)
+	@$(BIN)/clang-format --dry-run --Werror $(sources)
+	@echo $(filter-out core/python/%,$(filter %.cpp,$(sources))) | xargs -n 4 -P 2 sh -c \
+	    '$(BIN)/clang-tidy --quiet "$$@" -- -std=c++20 -Icore 2>/dev/null' clang-tidy
+	@$(STUB) build/_core.pyi && cmp build/_core.pyi src/mocapress/_core.pyi || { \
+	    echo "the bindings have changed: make stub writes src/mocapress/_core.pyi"; exit 1; }
 	$(BIN)/mypy
+
+# What Python's type checkers are told of the compiled module, by the module itself.
+STUB := $(BIN)/python -m nanobind.stubgen -q -m mocapress._core -o
+stub: $(VENV)/.built
+	$(STUB) src/mocapress/_core.pyi
 
 tests: $(VENV)/.built corpus browser
 	MOCAPRESS_CORPUS=$(if $(wildcard corpus/.version),$(CURDIR)/corpus,$(MOCAPRESS_CORPUS)) \
 	    $(BIN)/pytest
 
-# The decoders under AddressSanitizer and UBSan, on seeds and deterministic mutations of them.
+# The decoders under AddressSanitizer and UBSan, on seeds and mutations of them; what a run prints
+# repeats it: make sanitize FUZZ_SEED=N.
 fuzz_targets := $(filter-out core/fuzz/driver.cpp,$(wildcard core/fuzz/*.cpp))
 fuzzers := $(patsubst core/fuzz/%.cpp,build/fuzz/%,$(fuzz_targets))
 
 sanitize: $(fuzzers) $(VENV)/.built
-	$(BIN)/python core/fuzz/container.py -runs=$$(($(FUZZ_RUNS) / 10))
+	$(BIN)/python core/fuzz/container.py -runs=$$(($(FUZZ_RUNS) / 10)) $(FUZZ_SEED:%=-seed=%)
 	@for target in $(fuzzers); do echo $$target; \
-	    $$target $$(ls -d core/fuzz/seeds/$$(basename $$target)/* 2>/dev/null) -runs=$(FUZZ_RUNS) \
+	    $$target $$(ls -d core/fuzz/seeds/$$(basename $$target)/* 2>/dev/null) -runs=$(FUZZ_RUNS) $(FUZZ_SEED:%=-seed=%) \
 	    || exit 1; done
 
 $(fuzzers): build/fuzz/%: build/fuzz/core/fuzz/%.o build/fuzz/core/fuzz/driver.o $(kernels:%.cpp=build/fuzz/%.o)

@@ -21,7 +21,7 @@ def dies_at(n: int, work: Callable[[], object]) -> bool:
         child = os.fork()
     if not child:
         with contextlib.suppress(BaseException):
-            with _counted(n):
+            with counted(n):
                 work()
             os._exit(0)
         os._exit(1)
@@ -34,7 +34,8 @@ def dies_at(n: int, work: Callable[[], object]) -> bool:
 
 
 @contextlib.contextmanager
-def _counted(n: int) -> Iterator[None]:
+def counted(n: int) -> Iterator[None]:
+    """Have this process killed before its n-th call."""
     seen = 0
 
     def counting(name: str, real: Callable[..., Any]) -> Callable[..., Any]:

@@ -1,10 +1,5 @@
 """The Python interface as a user has it: read, write, compress, decompress, load."""
 
-import random
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +8,6 @@ import pytest
 import mocapress as mp
 from mocapress.api import compress_source
 from mocapress.source import Source
-from mocapress.storage import write_whole
 
 BROKEN = {
     "empty": b"",
@@ -169,31 +163,3 @@ def test_writing_and_reading_keeps_numbers_as_they_were(samples: Path, tmp_path:
     assert again.values.tobytes() == clip.values.tobytes()
     assert [c.name for c in again.columns] == [c.name for c in clip.columns]
     np.testing.assert_allclose(mp.positions(again)[::100], mp.positions(clip)[::100], atol=1e-6)
-
-
-def test_killed_at_any_moment_the_old_file_or_the_new_one(samples: Path, tmp_path: Path) -> None:
-    source, target = samples / "freebvh.bvh", tmp_path / "clip.mcz"
-    old, new = mp.compress(b"the old file"), mp.compress(source, "app:t=14")
-    code = (
-        "from mocapress import api\nfrom mocapress.storage import write_whole\n"
-        "print('ready', flush=True)\n"
-        f"target, source = {str(target)!r}, {str(source)!r}\n"
-        "while True:\n"
-        " write_whole(target, api.compress(source, 'app:t=14'), force=True)\n"
-        f" write_whole(target, api.compress(source) and {old!r}, force=True)\n"
-    )
-    moments = random.Random(4)
-    seen: set[bytes] = set()
-    for kill in range(400):
-        if kill >= 50 and len(seen) == 2:
-            break
-        write_whole(target, old, force=True)
-        with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE) as child:
-            assert child.stdout is not None
-            child.stdout.readline()
-            time.sleep(moments.uniform(0, 0.3))
-            child.send_signal(signal.SIGKILL)
-        found = target.read_bytes()
-        assert found in (old, new)
-        seen.add(found)
-    assert seen == {old, new}

@@ -16,16 +16,16 @@ struct Layout;
 template <>
 struct Layout<float> {
   using Bits = std::uint32_t;
-  static constexpr int mantissa_bits = 23;
-  static constexpr int exponent_bits = 8;
-  static constexpr int length_bits = 5;
+  static constexpr int kMantissaBits = 23;
+  static constexpr int kExponentBits = 8;
+  static constexpr int kLengthBits = 5;
 };
 template <>
 struct Layout<double> {
   using Bits = std::uint64_t;
-  static constexpr int mantissa_bits = 52;
-  static constexpr int exponent_bits = 11;
-  static constexpr int length_bits = 6;
+  static constexpr int kMantissaBits = 52;
+  static constexpr int kExponentBits = 11;
+  static constexpr int kLengthBits = 6;
 };
 
 // Step 1 of Algorithm 1.
@@ -38,17 +38,17 @@ struct Parts {
   static Parts split(Float value) {
     using L = Layout<Float>;
     const auto bits = std::bit_cast<typename L::Bits>(value);
-    return {(bits >> (L::mantissa_bits + L::exponent_bits)) != 0,
-            static_cast<int>(bits >> L::mantissa_bits & ((1 << L::exponent_bits) - 1)),
-            static_cast<std::int64_t>(bits & ((typename L::Bits{1} << L::mantissa_bits) - 1))};
+    return {(bits >> (L::kMantissaBits + L::kExponentBits)) != 0,
+            static_cast<int>(bits >> L::kMantissaBits & ((1 << L::kExponentBits) - 1)),
+            static_cast<std::int64_t>(bits & ((typename L::Bits{1} << L::kMantissaBits) - 1))};
   }
 
   Float join() const {
     using L = Layout<Float>;
     using Bits = typename L::Bits;
     return std::bit_cast<Float>(static_cast<Bits>(
-        Bits{sign} << (L::mantissa_bits + L::exponent_bits) |
-        static_cast<Bits>(exponent) << L::mantissa_bits | static_cast<Bits>(mantissa)));
+        Bits{sign} << (L::kMantissaBits + L::kExponentBits) |
+        static_cast<Bits>(exponent) << L::kMantissaBits | static_cast<Bits>(mantissa)));
   }
 };
 
@@ -59,7 +59,7 @@ class Correction {
 
  public:
   explicit Correction(int mantissa_limit)
-      : limit_(mantissa_limit), mantissas_(std::size_t{1} << L::exponent_bits) {}
+      : limit_(mantissa_limit), mantissas_(std::size_t{1} << L::kExponentBits) {}
 
   template <class Side>
   Float code(Side& side, Float actual, Float predicted) {
@@ -77,7 +77,7 @@ class Correction {
       if (!can_escape() || !side.bit(context.escape, escape)) {  // step 4
         const auto coded = static_cast<std::uint64_t>(context.difference.code(side, correction));
         value.mantissa = static_cast<std::int64_t>(static_cast<std::uint64_t>(p.mantissa) + coded);
-        if (value.mantissa >> L::mantissa_bits != 0) sound_ = false;
+        if (value.mantissa >> L::kMantissaBits != 0) sound_ = false;
         return value.join();
       }
     } else {
@@ -86,15 +86,15 @@ class Correction {
       if (symbol < kFar) {
         value.sign = p.sign;
         value.exponent = p.exponent + static_cast<int>(symbol) - kFarthest;
-        if (value.exponent >> L::exponent_bits != 0) sound_ = false;
+        if (value.exponent >> L::kExponentBits != 0) sound_ = false;
       } else {  // step 3
         value.sign = side.raw(1, value.sign ? 1 : 0) != 0;
         value.exponent = static_cast<int>(
-            side.raw(L::exponent_bits, static_cast<std::uint64_t>(value.exponent)));
+            side.raw(L::kExponentBits, static_cast<std::uint64_t>(value.exponent)));
       }
     }
     value.mantissa = static_cast<std::int64_t>(  // step 5
-        side.raw(L::mantissa_bits, static_cast<std::uint64_t>(value.mantissa)));
+        side.raw(L::kMantissaBits, static_cast<std::uint64_t>(value.mantissa)));
     return value.join();
   }
 
@@ -107,10 +107,10 @@ class Correction {
 
   struct Mantissa {
     Bit escape;
-    Difference<L::length_bits> difference;
+    Difference<L::kLengthBits> difference;
   };
 
-  bool can_escape() const { return limit_ <= L::mantissa_bits; }
+  bool can_escape() const { return limit_ <= L::kMantissaBits; }
 
   int limit_;
   bool sound_ = true;

@@ -53,8 +53,8 @@ int main() {
     same &= check_one("motion", kChannels, motion, mocapress::Line::float64, 0, level);
     same &= check_one("noise", kChannels, noise, mocapress::Line::float64, 0, level);
   }
-  constexpr std::size_t channels = exact::kSkeletonChannels;
-  same &= check_one("skeleton", channels, check::motion(kFrames / 4, channels, 3),
+  constexpr std::size_t kAll = exact::kSkeletonChannels;
+  same &= check_one("skeleton", kAll, check::motion(kFrames / 4, kAll, 3),
                     mocapress::Line::decimals, 4, 9);
   return same ? 0 : 1;
 }

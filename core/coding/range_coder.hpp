@@ -71,7 +71,8 @@ class RangeEncoder {
   }
 
   void carry() {
-    for (std::size_t i = coded_.size(); i-- > 0 && ++coded_[i] == 0;) {
+    for (std::size_t i = coded_.size(); i > 0; --i) {
+      if (++coded_[i - 1] != 0) return;
     }
   }
 

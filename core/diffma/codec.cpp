@@ -9,18 +9,18 @@
 namespace mocapress::diffma {
 namespace {
 
-// Eq. 3.1; APX(q) is apx + q.
-constexpr unsigned neg = 0, raw = 1, eql = 2, apx = 3;
-constexpr std::string_view alphabet =
+// Eq. 3.1; APX(q) is kApx + q.
+constexpr unsigned kNeg = 0, kRaw = 1, kEql = 2, kApx = 3;
+constexpr std::string_view kAlphabet =
     "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz!#$%&()*+-;<=>?@^_`{|}~";
-constexpr unsigned symbols = alphabet.size();
-constexpr unsigned no_symbol = 255;
+constexpr unsigned kSymbols = kAlphabet.size();
+constexpr unsigned kNoSymbol = 255;
 
-constexpr auto symbol_of = [] {
+constexpr auto kSymbolOf = [] {
   std::array<std::uint8_t, 256> table{};
-  table.fill(no_symbol);
-  for (unsigned i = 0; i < symbols; ++i) {
-    table[static_cast<unsigned char>(alphabet[i])] = static_cast<std::uint8_t>(i);
+  table.fill(kNoSymbol);
+  for (unsigned i = 0; i < kSymbols; ++i) {
+    table[static_cast<unsigned char>(kAlphabet[i])] = static_cast<std::uint8_t>(i);
   }
   return table;
 }();
@@ -28,7 +28,7 @@ constexpr auto symbol_of = [] {
 // How many opcodes are one character: all of them up to 6 bits; above, the last symbols lead two.
 unsigned single_opcodes(int bits) {
   const unsigned quantized = 1u << bits;
-  return quantized <= 82 ? symbols : symbols - (quantized - 82 + 83) / 84;
+  return quantized <= 82 ? kSymbols : kSymbols - (quantized - 82 + 83) / 84;
 }
 
 // The mean of the last `window` steps. Sums run over blocks of `window` steps: forwards over the
@@ -97,8 +97,8 @@ class Predictor {
  private:
   int order_;
   int known_ = 1;
-  std::array<double, most_order + 1> coefficients_{};
-  std::array<double, most_order + 1> last_{};
+  std::array<double, kMostOrder + 1> coefficients_{};
+  std::array<double, kMostOrder + 1> last_{};
 };
 
 double scale_of(const Parameters& parameters) { return parameters.bound / (1 << parameters.bits); }
@@ -109,16 +109,16 @@ class OpcodeWriter {
 
   // Writes nothing where not `wanted`; without a branch, since signs are hard to foresee.
   void write_neg(bool wanted) {
-    text_[size_] = alphabet[neg];
+    text_[size_] = kAlphabet[kNeg];
     size_ += wanted;
   }
 
   void write(unsigned opcode) {
     if (opcode < single_) {
-      text_[size_++] = alphabet[opcode];
+      text_[size_++] = kAlphabet[opcode];
     } else {
-      text_[size_++] = alphabet[single_ + (opcode - single_) / symbols];
-      text_[size_++] = alphabet[(opcode - single_) % symbols];
+      text_[size_++] = kAlphabet[single_ + (opcode - single_) / kSymbols];
+      text_[size_++] = kAlphabet[(opcode - single_) % kSymbols];
     }
   }
 
@@ -138,24 +138,24 @@ template <class Each>
 Scan read(std::string_view text, int bits, Each each) {
   Scan found;
   const unsigned single = single_opcodes(bits);
-  const unsigned most = apx + (1u << bits) - 1;
+  const unsigned most = kApx + (1u << bits) - 1;
   const auto stop = [&found](Fault fault, std::size_t at) {
     found.fault = fault;
     found.fault_at = at;
     return found;
   };
   for (std::size_t at = 0; at < text.size(); ++at) {
-    unsigned opcode = symbol_of[static_cast<unsigned char>(text[at])];
-    if (opcode == no_symbol) return stop(Fault::alphabet, at);
+    unsigned opcode = kSymbolOf[static_cast<unsigned char>(text[at])];
+    if (opcode == kNoSymbol) return stop(Fault::alphabet, at);
     if (opcode >= single) {
       if (++at == text.size()) return stop(Fault::cut_off, at);
-      const unsigned second = symbol_of[static_cast<unsigned char>(text[at])];
-      if (second == no_symbol) return stop(Fault::alphabet, at);
-      opcode = single + (opcode - single) * symbols + second;
+      const unsigned second = kSymbolOf[static_cast<unsigned char>(text[at])];
+      if (second == kNoSymbol) return stop(Fault::alphabet, at);
+      opcode = single + (opcode - single) * kSymbols + second;
     }
     if (opcode > most) return stop(Fault::opcode, at);
-    found.steps += opcode != neg;
-    found.raws += opcode == raw;
+    found.steps += opcode != kNeg;
+    found.raws += opcode == kRaw;
     each(opcode);
   }
   return found;
@@ -177,10 +177,10 @@ Record encode(std::span<const double> values, const Parameters& parameters, cons
     const double predicted = predictor.value();
     const double d = v - predicted;
     const bool negative = !(d >= 0);  // line 11
-    unsigned opcode = raw;
+    unsigned opcode = kRaw;
     double decoded = v;
     if (d == 0) {  // line 15
-      opcode = eql;
+      opcode = kEql;
       decoded = predicted;
     } else if (mean.value() > 0) {  // line 18
       const double unit = mean.value() * scale;
@@ -191,16 +191,16 @@ Record encode(std::span<const double> values, const Parameters& parameters, cons
         const double near = predicted + (negative ? -change : change);
         const double error = std::abs(v - near);
         if (error < limits.tolerance && error <= limits.max_error) {  // line 21
-          opcode = limits.spare_signs && q == 0 ? eql : apx + static_cast<unsigned>(q);
+          opcode = limits.spare_signs && q == 0 ? kEql : kApx + static_cast<unsigned>(q);
           decoded = near;
           record.squared_error += error * error;
         }
       }
     }
-    const bool flip = negative != was_negative && (opcode >= apx || !limits.spare_signs);
+    const bool flip = negative != was_negative && (opcode >= kApx || !limits.spare_signs);
     writer.write_neg(flip);  // line 12
     was_negative ^= flip;
-    if (opcode == raw) record.table.push_back(v);
+    if (opcode == kRaw) record.table.push_back(v);
     writer.write(opcode);
     if (predictor.complete()) mean.append(std::abs(decoded - predicted));
     predictor.append(decoded);
@@ -232,16 +232,16 @@ void decode(std::string_view opcodes, std::span<const double> table, const Param
   auto next = table.begin() + 1;
   double sign = 1;
   read(opcodes, parameters.bits, [&](unsigned opcode) {
-    if (opcode == neg) {
+    if (opcode == kNeg) {
       sign = -sign;
       return;
     }
     const double predicted = predictor.value();
     double decoded = predicted;
-    if (opcode == raw) {
+    if (opcode == kRaw) {
       decoded = *next++;
-    } else if (opcode != eql) {
-      const double change = (opcode - apx) * (mean.value() * scale);
+    } else if (opcode != kEql) {
+      const double change = (opcode - kApx) * (mean.value() * scale);
       decoded = predicted + sign * change;
     }
     *out++ = decoded;

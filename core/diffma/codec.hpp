@@ -11,8 +11,8 @@
 
 namespace mocapress::diffma {
 
-inline constexpr int most_bits = 12;
-inline constexpr int most_order = 7;
+inline constexpr int kMostBits = 12;
+inline constexpr int kMostOrder = 7;
 
 // What encoder and decoder share.
 struct Parameters {

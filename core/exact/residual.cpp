@@ -21,7 +21,7 @@ constexpr int kPlainDecades = 5;
 std::array<double, kBuckets - 1> make_bounds() {
   std::array<double, kBuckets - 1> bounds{};
   for (int i = 0; i < kBuckets - 1; ++i) {
-    const double q = (i + 1 - kBuckets / 2) / (kBuckets / 2.0);
+    const double q = (i + 1) / (kBuckets / 2.0) - 1;
     const double square = q * q;
     bounds[static_cast<std::size_t>(i)] =
         q * (4.65 + square * (5.25 + square * (1.77 + 0.33 * square)));

@@ -51,7 +51,7 @@ class Turns {
   static constexpr int kReach = 16;  // scales
 
   double lowest_;
-  std::array<Bit, 2 * kReach> across_;  // by how many half scales away the edge is
+  std::array<Bit, std::size_t{2} * kReach> across_;  // by how many half scales away the edge is
 };
 
 }  // namespace mocapress::exact

@@ -43,14 +43,14 @@ struct Cursor {
   }
   bool word(const std::string& expected) {
     skip_blanks();
-    const size_t length = expected.size();
-    if (static_cast<size_t>(end - p) < length || std::memcmp(p, expected.data(), length) != 0)
+    const std::size_t length = expected.size();
+    if (static_cast<std::size_t>(end - p) < length || std::memcmp(p, expected.data(), length) != 0)
       return false;
     if (p + length < end && !is_blank(p[length]) && p[length] != '\n') return false;
     p += length;
     return true;
   }
-  bool counter(int64_t& value) {
+  bool counter(std::int64_t& value) {
     skip_blanks();
     const auto [rest, error] = std::from_chars(p, end, value);
     if (error != std::errc{}) return false;
@@ -84,17 +84,17 @@ void note(ColumnStatistics& column, const NumberShape& shape) {
 
 }  // namespace
 
-size_t RowShape::columns() const {
-  return std::accumulate(counts.begin(), counts.end(), size_t{0});
+std::size_t RowShape::columns() const {
+  return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
 }
 
-ParsedRows parse_rows(std::string_view data, uint64_t begin, const RowShape& shape,
-                      uint64_t most_rows) {
+ParsedRows parse_rows(std::string_view data, std::uint64_t begin, const RowShape& shape,
+                      std::uint64_t most_rows) {
   ParsedRows parsed;
-  const size_t columns = shape.columns();
+  const std::size_t columns = shape.columns();
   parsed.statistics.resize(columns);
   Cursor cursor{data.data() + begin, data.data() + data.size()};
-  const auto offset = [&](const char* p) { return static_cast<uint64_t>(p - data.data()); };
+  const auto offset = [&](const char* p) { return static_cast<std::uint64_t>(p - data.data()); };
   cursor.skip_empty_lines();
   std::vector<double> row(columns);
   std::vector<NumberShape> shapes(columns);
@@ -103,36 +103,36 @@ ParsedRows parse_rows(std::string_view data, uint64_t begin, const RowShape& sha
     Cursor next = cursor;
     next.skip_blanks();
     RowEnd end = RowEnd::end_of_data;
-    uint32_t item = 0;
-    int64_t counter = 0;
+    std::uint32_t item = 0;
+    std::int64_t counter = 0;
     bool whole = next.p < next.end;
-    if (whole && parsed.offsets.size() == most_rows) end = RowEnd::limit, whole = false;
+    const auto stop = [&](RowEnd why) {
+      end = why;
+      whole = false;
+    };
+    if (whole && parsed.offsets.size() == most_rows) stop(RowEnd::limit);
     if (whole && shape.counter) {
-      if (!next.counter(counter))
-        end = RowEnd::number_expected, whole = false;
-      else if (!next.line_end())
-        end = RowEnd::line_end_expected, whole = false;
+      if (!next.counter(counter)) {
+        stop(RowEnd::number_expected);
+      } else if (!next.line_end()) {
+        stop(RowEnd::line_end_expected);
+      }
     }
-    size_t column = 0;
-    for (size_t i = 0; whole && i < shape.counts.size(); ++i) {
-      item = static_cast<uint32_t>(i);
+    std::size_t column = 0;
+    for (std::size_t i = 0; whole && i < shape.counts.size(); ++i) {
+      item = static_cast<std::uint32_t>(i);
       if (!shape.words[i].empty() && !next.word(shape.words[i])) {
-        end = RowEnd::word_differs;
-        whole = false;
+        stop(RowEnd::word_differs);
         break;
       }
-      for (uint32_t k = 0; k < shape.counts[i]; ++k, ++column)
-        if (!next.number(row[column], shapes[column])) {
-          end = RowEnd::number_expected;
-          whole = false;
-          break;
-        }
-      if (whole && !next.line_end()) end = RowEnd::line_end_expected, whole = false;
+      for (std::uint32_t k = 0; whole && k < shape.counts[i]; ++k, ++column) {
+        if (!next.number(row[column], shapes[column])) stop(RowEnd::number_expected);
+      }
+      if (whole && !next.line_end()) stop(RowEnd::line_end_expected);
     }
     // A line more than the shape has belongs to this row, not to the next.
     if (whole && shape.counter && next.p < next.end && !may_follow_row(*next.p)) {
-      end = RowEnd::counter_expected;
-      whole = false;
+      stop(RowEnd::counter_expected);
     }
     if (whole && next.p == start) whole = false;  // a shape without items
     if (!whole) {
@@ -146,29 +146,29 @@ ParsedRows parse_rows(std::string_view data, uint64_t begin, const RowShape& sha
     parsed.values.insert(parsed.values.end(), row.begin(), row.end());
     parsed.offsets.push_back(offset(start));
     if (shape.counter) parsed.counters.push_back(counter);
-    for (size_t c = 0; c < columns; ++c) note(parsed.statistics[c], shapes[c]);
+    for (std::size_t c = 0; c < columns; ++c) note(parsed.statistics[c], shapes[c]);
     cursor = next;
   }
 }
 
-void print_row(std::string& out, const RowTemplate& row, const double* values, int64_t counter,
+void print_row(std::string& out, const RowTemplate& row, const double* values, std::int64_t counter,
                const NumberFormat* formats, const std::vector<SlotText>& replaced) {
-  char text[max_number_text];
+  char text[kLongestNumber];
   const std::string* literal = row.literals.data();
   if (row.counter) {
     out += *literal++;
     out.append(text, std::to_chars(text, text + sizeof text, counter).ptr);
   }
   auto next = replaced.begin();
-  for (uint32_t k = 0; k < row.columns.size(); ++k) {
+  for (std::uint32_t k = 0; k < row.columns.size(); ++k) {
     out += *literal++;
     if (next != replaced.end() && next->slot == k) {
       out += next++->text;
       continue;
     }
-    const uint32_t column = row.columns[k];
+    const std::uint32_t column = row.columns[k];
     const char* const end = print_number(text, values[column], formats[column]);
-    const auto length = static_cast<size_t>(end - text);
+    const auto length = static_cast<std::size_t>(end - text);
     if (row.widths[k] > length) out.append(row.widths[k] - length, ' ');
     out.append(text, length);
   }
@@ -176,13 +176,14 @@ void print_row(std::string& out, const RowTemplate& row, const double* values, i
 }
 
 bool match_row(std::string_view bytes, const RowTemplate& row, const double* values,
-               int64_t counter, const NumberFormat* formats, std::vector<SlotText>& differing) {
+               std::int64_t counter, const NumberFormat* formats,
+               std::vector<SlotText>& differing) {
   differing.clear();
-  char text[max_number_text];
+  char text[kLongestNumber];
   const char* p = bytes.data();
   const char* const end = p + bytes.size();
-  const auto take = [&](const char* expected, size_t length) {
-    if (static_cast<size_t>(end - p) < length || std::memcmp(p, expected, length) != 0)
+  const auto take = [&](const char* expected, std::size_t length) {
+    if (static_cast<std::size_t>(end - p) < length || std::memcmp(p, expected, length) != 0)
       return false;
     p += length;
     return true;
@@ -192,19 +193,19 @@ bool match_row(std::string_view bytes, const RowTemplate& row, const double* val
     if (!take(literal->data(), literal->size())) return false;
     ++literal;
     const auto length =
-        static_cast<size_t>(std::to_chars(text, text + sizeof text, counter).ptr - text);
+        static_cast<std::size_t>(std::to_chars(text, text + sizeof text, counter).ptr - text);
     if (!take(text, length)) return false;
   }
-  for (size_t k = 0; k < row.columns.size(); ++k) {
+  for (std::size_t k = 0; k < row.columns.size(); ++k) {
     if (!take(literal->data(), literal->size())) return false;
     ++literal;
-    const uint32_t column = row.columns[k];
+    const std::uint32_t column = row.columns[k];
     const auto length =
-        static_cast<size_t>(print_number(text, values[column], formats[column]) - text);
-    const size_t padding = row.widths[k] > length ? row.widths[k] - length : 0;
+        static_cast<std::size_t>(print_number(text, values[column], formats[column]) - text);
+    const std::size_t padding = row.widths[k] > length ? row.widths[k] - length : 0;
     const char* const start = p;
-    for (size_t i = 0; i < padding && p < end && *p == ' '; ++i) ++p;
-    const bool padded = static_cast<size_t>(p - start) == padding;
+    for (std::size_t i = 0; i < padding && p < end && *p == ' '; ++i) ++p;
+    const bool padded = static_cast<std::size_t>(p - start) == padding;
     if (padded && take(text, length) && (p == end || is_blank(*p) || *p == '\n')) continue;
     // Another text for the number: up to the next blank, and with its padding where there is one.
     p = start;
@@ -212,7 +213,8 @@ bool match_row(std::string_view bytes, const RowTemplate& row, const double* val
       while (p < end && *p == ' ') ++p;
     while (p < end && !is_blank(*p) && *p != '\n') ++p;
     if (p == start) return false;
-    differing.push_back({static_cast<uint32_t>(k), {start, static_cast<size_t>(p - start)}});
+    differing.push_back(
+        {static_cast<std::uint32_t>(k), {start, static_cast<std::size_t>(p - start)}});
   }
   return take(literal->data(), literal->size()) && p == end;
 }

@@ -1,8 +1,8 @@
 """Fuzz target of the `.mcz` and `.mcm` readers: any bytes give an error of ours, or the contents.
 
-`python core/fuzz/fuzz_container.py -runs=N` runs N deterministic mutations of the golden files,
-half of them with checksums made right again, so that what lies behind these is reached.
-`one_input` is what atheris takes.
+`python core/fuzz/container.py -runs=N` runs N mutations of the golden files, half of them with
+checksums made right again, so that what lies behind these is reached. They follow from a number
+that it prints, and takes as `-seed=N`. `one_input` is what atheris takes.
 """
 
 import random
@@ -62,9 +62,10 @@ def mutated(data: bytes, chance: random.Random) -> bytes:
     return bytes(made)
 
 
-def main(runs: int) -> None:
+def main(runs: int, seed: int) -> None:
     """Run so many mutations."""
-    chance = random.Random(1)
+    print(f"-runs={runs} -seed={seed}", flush=True)
+    chance = random.Random(seed)
     seeds = [path.read_bytes() for path in sorted(GOLDEN.glob("*.mc[zm]"))]
     for run in range(runs):
         data = mutated(chance.choice(seeds), chance)
@@ -73,4 +74,5 @@ def main(runs: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1].removeprefix("-runs=")) if sys.argv[1:] else 20_000)
+    options = dict(argument.split("=") for argument in sys.argv[1:])
+    main(int(options.get("-runs", 20_000)), int(options.get("-seed", random.randrange(2**32))))

@@ -1,10 +1,8 @@
 // Runs a fuzz target where libFuzzer is not at hand:
 //   driver FILE...           runs every file
 //   driver [FILE...] -runs=N  besides, N mutations of the files, or of bytes at random without any
-// The mutations are the same on every run. Build, for fuzz_app:
-//   g++ -std=c++20 -g -O1 -ffp-contract=off -fsanitize=address,undefined
-//     core/fuzz/fuzz_app.cpp core/fuzz/driver.cpp core/app.cpp core/snap.cpp
-// With clang: -fsanitize=fuzzer,address,undefined, and no driver.cpp.
+// The mutations of a run follow from a number that it prints, and takes as -seed=N. `make sanitize`
+// builds and runs all targets; libFuzzer takes the same options, and no driver.cpp.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -59,10 +57,15 @@ void mutate(Bytes& bytes, Random& random) {
 int main(int count, char** arguments) {
   std::vector<Bytes> seeds;
   unsigned long runs = 0;
+  unsigned long seed = std::random_device{}();
   for (int i = 1; i < count; ++i) {
     const std::string argument = arguments[i];
     if (argument.starts_with("-runs=")) {
       runs = std::stoul(argument.substr(6));
+      continue;
+    }
+    if (argument.starts_with("-seed=")) {
+      seed = std::stoul(argument.substr(6));
       continue;
     }
     std::ifstream file(argument, std::ios::binary);
@@ -73,7 +76,9 @@ int main(int count, char** arguments) {
     seeds.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
     LLVMFuzzerTestOneInput(seeds.back().data(), seeds.back().size());
   }
-  Random random(1);
+  std::printf("-runs=%lu -seed=%lu\n", runs, seed);
+  std::fflush(stdout);
+  Random random(seed);
   for (unsigned long run = 0; run < runs; ++run) {
     Bytes bytes = seeds.empty() ? noise(random) : seeds[run % seeds.size()];
     for (auto times = random() % 4; times-- > 0;) mutate(bytes, random);

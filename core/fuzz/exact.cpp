@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <stdexcept>
+#include <span>
 #include <vector>
 
 #include "exact/codec.hpp"
@@ -14,14 +14,16 @@
 namespace exact = mocapress::exact;
 using mocapress::Bytes;
 using mocapress::ByteView;
+using mocapress::fuzz::done;
 using mocapress::fuzz::Input;
+using mocapress::fuzz::same_bits;
 
 namespace {
 
 constexpr int kLevels[] = {1, 2, 1, 2, 3, 6, 9};
 
 exact::Column column_of(Input& input, bool noise) {
-  constexpr int digits[] = {0, 1, 4, 6, 15};
+  constexpr int kDigits[] = {0, 1, 4, 6, 15};
   const auto line = static_cast<mocapress::Line>(input.below(7));
   const bool none = line == mocapress::Line::float64 || line == mocapress::Line::float32 ||
                     line == mocapress::Line::shortest32;
@@ -29,7 +31,7 @@ exact::Column column_of(Input& input, bool noise) {
   const unsigned chosen = input.below(5);
   const auto exponent = static_cast<int>(input.below(64)) - 32;
   const bool far = input.below(8) == 0;
-  return {line, none ? 0 : std::max(digits[chosen], few), noise, far ? 31 * exponent : exponent,
+  return {line, none ? 0 : std::max(kDigits[chosen], few), noise, far ? 31 * exponent : exponent,
           static_cast<int>(input.below(3))};
 }
 
@@ -74,12 +76,7 @@ void fill(std::vector<double>& values, Input input) {
 
 bool decodes(ByteView payload, std::vector<double>& values, std::size_t frames,
              const exact::Clip& clip) {
-  try {
-    exact::decode(payload, values.data(), frames, clip);
-    return true;
-  } catch (const std::invalid_argument&) {
-    return false;
-  }
+  return done([&] { exact::decode(payload, values.data(), frames, clip); });
 }
 
 }  // namespace
@@ -92,6 +89,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t count = 1 + input.below(12);
   const std::size_t noisy = input.below(3) == 0 ? input.below(static_cast<unsigned>(count)) : 0;
   std::vector<exact::Column> columns;
+  columns.reserve(count);
   for (std::size_t c = 0; c < count; ++c) columns.push_back(column_of(input, c >= count - noisy));
   const auto couplings = couplings_of(input, count - noisy);
   const exact::Start start;
@@ -107,14 +105,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fill(values, input);
   Bytes payload = exact::encode(values.data(), frames, clip);
   if (!decodes(payload, decoded, frames, clip)) std::abort();
-  if (!values.empty() && std::memcmp(values.data(), decoded.data(), 8 * values.size()) != 0) {
-    std::abort();
-  }
+  if (!same_bits(values, decoded)) std::abort();
   std::vector<double> first(frames / 2 * count);
   exact::decode(payload, first.data(), frames / 2, clip, false);
-  if (!first.empty() && std::memcmp(values.data(), first.data(), 8 * first.size()) != 0) {
-    std::abort();
-  }
+  if (!same_bits(std::span(values).first(first.size()), first)) std::abort();
   if (payload.empty()) return 0;
   const std::size_t place = at * payload.size() / 256;
   if (frames > 0 && decodes(ByteView(payload).first(place), decoded, frames, clip) && level <= 2) {

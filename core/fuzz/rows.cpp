@@ -17,7 +17,7 @@ using namespace mocapress;
 namespace {
 
 void check_number(double value, NumberFormat format) {
-  char text[max_number_text];
+  char text[kLongestNumber];
   const char* const end = print_number(text, value, format);
   if (end > text + sizeof text) std::abort();
   if (format.kind == NumberKind::shortest32) value = static_cast<float>(value);
@@ -30,26 +30,26 @@ void check_number(double value, NumberFormat format) {
     return;
   }
   if (format.kind == NumberKind::shortest &&
-      std::bit_cast<uint64_t>(read) != std::bit_cast<uint64_t>(value))
+      std::bit_cast<std::uint64_t>(read) != std::bit_cast<std::uint64_t>(value))
     std::abort();
 }
 
 void check_rows(std::string_view text, const RowShape& shape, NumberFormat format) {
   const ParsedRows rows = parse_rows(text, 0, shape, 1000);
-  const size_t columns = shape.columns();
+  const std::size_t columns = shape.columns();
   if (rows.offsets.empty() || rows.values.size() != (rows.offsets.size() - 1) * columns)
     std::abort();
   if (rows.offsets.back() > text.size() || rows.error_offset > text.size()) std::abort();
   const std::vector<NumberFormat> formats(columns, format);
   RowTemplate row{shape.counter, {}, {}, {}};
   row.literals.assign(columns + 1 + shape.counter, " ");
-  for (uint32_t c = 0; c < columns; ++c) {
+  for (std::uint32_t c = 0; c < columns; ++c) {
     row.columns.push_back(c);
-    row.widths.push_back(static_cast<uint8_t>(c % 12));
+    row.widths.push_back(static_cast<std::uint8_t>(c % 12));
   }
   std::vector<SlotText> differing;
-  for (size_t r = 0; r + 1 < rows.offsets.size(); ++r) {
-    const int64_t counter = shape.counter ? rows.counters[r] : 0;
+  for (std::size_t r = 0; r + 1 < rows.offsets.size(); ++r) {
+    const std::int64_t counter = shape.counter ? rows.counters[r] : 0;
     const double* const values = rows.values.data() + r * columns;
     std::string printed;
     print_row(printed, row, values, counter, formats.data(), {});
@@ -62,16 +62,17 @@ void check_rows(std::string_view text, const RowShape& shape, NumberFormat forma
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 4) return 0;
   NumberFormat format{static_cast<NumberKind>(data[0] % 6),
-                      static_cast<uint8_t>(data[1] % (max_digits + 1)),
-                      static_cast<uint8_t>(data[2] % 9),
+                      static_cast<std::uint8_t>(data[1] % (kMostDigits + 1)),
+                      static_cast<std::uint8_t>(data[2] % 9),
                       (data[3] & 1) != 0,
                       (data[3] & 2) != 0,
                       (data[3] & 4) != 0};
-  if (format.kind == NumberKind::general) format.digits = static_cast<uint8_t>(1 + data[1] % 17);
-  for (size_t at = 4; at + 8 <= size && at < 256; at += 8) {
+  if (format.kind == NumberKind::general)
+    format.digits = static_cast<std::uint8_t>(1 + data[1] % 17);
+  for (std::size_t at = 4; at + 8 <= size && at < 256; at += 8) {
     double value;
     std::memcpy(&value, data + at, 8);
     check_number(value, format);

@@ -83,6 +83,7 @@ LineOf coarsest_line(const ColumnView& column) {
 
 std::vector<LineOf> coarsest_lines(const double* values, std::size_t rows, std::size_t columns) {
   std::vector<LineOf> lines;
+  lines.reserve(columns);
   for (std::size_t c = 0; c < columns; ++c)
     lines.push_back(coarsest_line({values + c, rows, columns}));
   return lines;

@@ -22,15 +22,15 @@ constexpr std::int64_t kFarthest = std::int64_t{1} << 62;
 template <class Integer, class Bits>
 std::int64_t ordered(Bits bits) {
   const auto number = static_cast<Integer>(bits);
-  constexpr auto lowest = std::numeric_limits<Integer>::min();
-  return number >= 0 ? number : static_cast<Integer>(-1 - (number - lowest));
+  constexpr auto kLowest = std::numeric_limits<Integer>::min();
+  return number >= 0 ? number : static_cast<Integer>(-1 - (number - kLowest));
 }
 
 template <class Integer, class Bits>
 Bits unordered(std::int64_t place) {
-  constexpr auto lowest = std::numeric_limits<Integer>::min();
+  constexpr auto kLowest = std::numeric_limits<Integer>::min();
   const auto number = static_cast<Integer>(place);
-  return static_cast<Bits>(number >= 0 ? number : static_cast<Integer>(lowest + (-1 - number)));
+  return static_cast<Bits>(number >= 0 ? number : static_cast<Integer>(kLowest + (-1 - number)));
 }
 
 std::int64_t place32(float number) {
@@ -83,9 +83,9 @@ double number_of(std::int64_t digits, int decimals) {
 
 // Out of the range of a float is undefined as a conversion, and on no float32 line.
 float narrowed(double number) {
-  constexpr double most = std::numeric_limits<float>::max();
-  if (number > most) return std::numeric_limits<float>::infinity();
-  if (number < -most) return -std::numeric_limits<float>::infinity();
+  constexpr double kMost = std::numeric_limits<float>::max();
+  if (number > kMost) return std::numeric_limits<float>::infinity();
+  if (number < -kMost) return -std::numeric_limits<float>::infinity();
   return static_cast<float>(number);
 }
 

@@ -12,17 +12,17 @@ namespace mocapress {
 namespace {
 
 // 10^count, for count <= 19.
-uint64_t whole_power(unsigned count) {
+std::uint64_t whole_power(unsigned count) {
   static constexpr auto kPowers = [] {
-    std::array<uint64_t, 20> powers{1};
-    for (size_t i = 1; i < powers.size(); ++i) powers[i] = 10 * powers[i - 1];
+    std::array<std::uint64_t, 20> powers{1};
+    for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = 10 * powers[i - 1];
     return powers;
   }();
   return kPowers[count];
 }
 
 // Value of a text of digits with at most one exponent that the fast path cannot give.
-const char* parse_slow(const char* text, const char* end, bool negative, int64_t exponent10,
+const char* parse_slow(const char* text, const char* end, bool negative, std::int64_t exponent10,
                        double& value) {
   const auto [rest, error] = std::from_chars(text, end, value);
   if (error == std::errc::result_out_of_range) {
@@ -35,13 +35,13 @@ const char* parse_slow(const char* text, const char* end, bool negative, int64_t
   return end;
 }
 
-char* print_digits(char* out, uint64_t number, unsigned count) {
+char* print_digits(char* out, std::uint64_t number, unsigned count) {
   for (char* place = out + count; place > out; number /= 10)
     *--place = static_cast<char>('0' + number % 10);
   return out + count;
 }
 
-unsigned count_digits(uint64_t number) {
+unsigned count_digits(std::uint64_t number) {
   unsigned count = 1;
   while (number >= 10) number /= 10, ++count;
   return count;
@@ -50,14 +50,14 @@ unsigned count_digits(uint64_t number) {
 char* print_exponent(char* out, int exponent, const NumberFormat& format) {
   *out++ = format.upper ? 'E' : 'e';
   *out++ = exponent < 0 ? '-' : '+';
-  const auto magnitude = static_cast<uint64_t>(std::abs(exponent));
+  const auto magnitude = static_cast<std::uint64_t>(std::abs(exponent));
   return print_digits(out, magnitude,
                       std::max<unsigned>(count_digits(magnitude), format.exponent_digits));
 }
 
 // A decimal number: 0.d1d2d3... x 10^(exponent+1), its digits in `digits`.
 struct Decimal {
-  uint64_t digits;
+  std::uint64_t digits;
   unsigned count;
   int exponent;
 };
@@ -95,17 +95,17 @@ char* print_decimal(char* out, Decimal number, int limit, const NumberFormat& fo
   return std::copy(digits + whole, digits + count, out);
 }
 
-Decimal strip_zeros(uint64_t digits, unsigned count, int exponent) {
+Decimal strip_zeros(std::uint64_t digits, unsigned count, int exponent) {
   while (count > 1 && digits % 10 == 0) digits /= 10, --count;
   return {digits, count, exponent};
 }
 
 // Reads back what std::to_chars printed in scientific notation.
 Decimal read_scientific(const char* text, const char* end) {
-  uint64_t digits = 0;
+  std::uint64_t digits = 0;
   unsigned count = 0;
   for (; text < end && *text != 'e'; ++text)
-    if (*text != '.') digits = digits * 10 + static_cast<uint64_t>(*text - '0'), ++count;
+    if (*text != '.') digits = digits * 10 + static_cast<std::uint64_t>(*text - '0'), ++count;
   int exponent = 0;
   std::from_chars(text + (text[1] == '+' ? 2 : 1), end, exponent);
   return {digits, count, exponent};
@@ -117,7 +117,7 @@ Decimal round_significant(double value, unsigned count) {
     int exponent = decimal_exponent(value);
     const int shift = static_cast<int>(count) - 1 - exponent;
     const double scaled = shift >= 0 ? value * power_of_ten(shift) : value / power_of_ten(-shift);
-    auto digits = static_cast<uint64_t>(std::llrint(scaled));
+    auto digits = static_cast<std::uint64_t>(std::llrint(scaled));
     if (digits >= whole_power(count)) digits /= 10, ++exponent;
     if (digits >= whole_power(count - 1)) return strip_zeros(digits, count, exponent);
   }
@@ -133,8 +133,8 @@ char* print_fixed(char* out, double value, const NumberFormat& format) {
   char* const start = out;
   if (decimals <= 15 && value * power_of_ten(static_cast<int>(decimals)) < 1e15) {
     const auto scaled =
-        static_cast<uint64_t>(std::llrint(value * power_of_ten(static_cast<int>(decimals))));
-    const uint64_t whole = scaled / whole_power(decimals);
+        static_cast<std::uint64_t>(std::llrint(value * power_of_ten(static_cast<int>(decimals))));
+    const std::uint64_t whole = scaled / whole_power(decimals);
     if (whole > 0 || !format.bare_point || decimals == 0)
       out = print_digits(out, whole, count_digits(whole));
     if (decimals > 0) {
@@ -142,21 +142,22 @@ char* print_fixed(char* out, double value, const NumberFormat& format) {
       out = print_digits(out, scaled % whole_power(decimals), decimals);
     }
   } else {
-    const auto result = std::to_chars(out, out + max_number_text - 1, value,
+    const auto result = std::to_chars(out, out + kLongestNumber - 1, value,
                                       std::chars_format::fixed, static_cast<int>(decimals));
     out = result.ptr;
     if (format.bare_point && *start == '0' && decimals > 0) {
-      std::memmove(start, start + 1, static_cast<size_t>(out - start - 1));
+      std::memmove(start, start + 1, static_cast<std::size_t>(out - start - 1));
       --out;
     }
   }
   if (format.kind == NumberKind::trimmed && decimals > 0) {
     while (out[-1] == '0') --out;
     if (out[-1] == '.') {
-      if (format.point_zero)
+      if (format.point_zero) {
         *out++ = '0';
-      else
+      } else {
         --out;
+      }
     }
     if (out == start) *out++ = '0';
   }
@@ -165,7 +166,7 @@ char* print_fixed(char* out, double value, const NumberFormat& format) {
 
 char* print_scientific(char* out, double value, const NumberFormat& format) {
   char* const start = out;
-  out = std::to_chars(out, out + max_number_text - 1, value, std::chars_format::scientific,
+  out = std::to_chars(out, out + kLongestNumber - 1, value, std::chars_format::scientific,
                       format.digits)
             .ptr;
   char* mark = std::find(start, out, 'e');
@@ -182,38 +183,38 @@ const char* parse_number(const char* text, const char* end, double& value, Numbe
   const bool negative = p < end && *p == '-';
   if (p < end && (*p == '-' || *p == '+')) ++p;
   const char* const start = p;
-  uint64_t digits = 0;
-  while (p < end && is_digit(*p)) digits = digits * 10 + static_cast<uint64_t>(*p++ - '0');
+  std::uint64_t digits = 0;
+  while (p < end && is_digit(*p)) digits = digits * 10 + static_cast<std::uint64_t>(*p++ - '0');
   const auto whole = p - start;
-  ptrdiff_t decimals = 0;
+  std::ptrdiff_t decimals = 0;
   if (p < end && *p == '.') {
     const char* const point = ++p;
-    while (p < end && is_digit(*p)) digits = digits * 10 + static_cast<uint64_t>(*p++ - '0');
+    while (p < end && is_digit(*p)) digits = digits * 10 + static_cast<std::uint64_t>(*p++ - '0');
     decimals = p - point;
     shape.point = true;
     shape.bare_point = whole == 0;
     shape.trailing_zero = decimals > 0 && p[-1] == '0';
   }
   if (whole + decimals == 0) return nullptr;
-  int64_t exponent = 0;
+  std::int64_t exponent = 0;
   if (p < end && (*p == 'e' || *p == 'E')) {
     const char* q = p + 1;
     const bool down = q < end && *q == '-';
     if (q < end && (*q == '-' || *q == '+')) ++q;
     const char* const first = q;
     while (q < end && is_digit(*q))
-      exponent = std::min<int64_t>(exponent * 10 + (*q++ - '0'), 1'000'000);
+      exponent = std::min<std::int64_t>(exponent * 10 + (*q++ - '0'), 1'000'000);
     if (q == first) return nullptr;
     shape.upper = *p == 'E';
-    shape.exponent_digits = static_cast<uint8_t>(std::min<ptrdiff_t>(q - first, 255));
+    shape.exponent_digits = static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(q - first, 255));
     if (down) exponent = -exponent;
     p = q;
   }
-  shape.decimals = static_cast<uint8_t>(std::min<ptrdiff_t>(decimals, 255));
-  const int64_t shift = exponent - decimals;
-  if (whole + decimals <= 19 && digits < (uint64_t{1} << 53) && shift >= -kMostExactPower &&
+  shape.decimals = static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(decimals, 255));
+  const std::int64_t shift = exponent - decimals;
+  if (whole + decimals <= 19 && digits < (std::uint64_t{1} << 53) && shift >= -kMostExactPower &&
       shift <= kMostExactPower) {
-    shape.significant = digits == 0 ? 0 : static_cast<uint8_t>(count_digits(digits));
+    shape.significant = digits == 0 ? 0 : static_cast<std::uint8_t>(count_digits(digits));
     value = static_cast<double>(digits);
     const double power = power_of_ten(static_cast<int>(shift < 0 ? -shift : shift));
     value = shift < 0 ? value / power : value * power;
@@ -222,9 +223,9 @@ const char* parse_number(const char* text, const char* end, double& value, Numbe
   }
   const char* first = start;
   while (first < p && (*first == '0' || *first == '.')) ++first;
-  ptrdiff_t significant = 0;
+  std::ptrdiff_t significant = 0;
   for (const char* q = first; q < p && (is_digit(*q) || *q == '.'); ++q) significant += *q != '.';
-  shape.significant = static_cast<uint8_t>(std::min<ptrdiff_t>(significant, 255));
+  shape.significant = static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(significant, 255));
   // Decimal exponent of the leading digit: tells overflow from underflow.
   return parse_slow(start, p, negative, shift + significant, value);
 }

@@ -6,7 +6,7 @@
 
 namespace mocapress {
 
-enum class NumberKind : uint8_t {
+enum class NumberKind : std::uint8_t {
   general = 0,
   fixed = 1,
   trimmed = 2,
@@ -17,22 +17,22 @@ enum class NumberKind : uint8_t {
 
 struct NumberFormat {
   NumberKind kind = NumberKind::shortest;
-  uint8_t digits = 0;
-  uint8_t exponent_digits = 2;
+  std::uint8_t digits = 0;
+  std::uint8_t exponent_digits = 2;
   bool point_zero = false;
   bool bare_point = false;
   bool upper = false;
 };
 
-inline constexpr unsigned max_digits = 40;
-// Longest text of any double in any format: sign, 309 digits, point, max_digits decimals.
-inline constexpr size_t max_number_text = 384;
+inline constexpr unsigned kMostDigits = 40;
+// Longest text of any double in any format: sign, 309 digits, point, kMostDigits decimals.
+inline constexpr std::size_t kLongestNumber = 384;
 
 // How a number was written, as far as it tells which format printed it.
 struct NumberShape {
-  uint8_t decimals = 0;         // digits behind the point
-  uint8_t significant = 0;      // digits from the first that is not zero
-  uint8_t exponent_digits = 0;  // 0: no exponent
+  std::uint8_t decimals = 0;         // digits behind the point
+  std::uint8_t significant = 0;      // digits from the first that is not zero
+  std::uint8_t exponent_digits = 0;  // 0: no exponent
   bool point = false;
   bool trailing_zero = false;  // the last decimal is 0
   bool bare_point = false;
@@ -45,7 +45,7 @@ inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 // where it exceeds the range of a double. The value is the nearest double, as strtod gives it.
 const char* parse_number(const char* text, const char* end, double& value, NumberShape& shape);
 
-// Prints a value; gives the end of the text. `out` has room for max_number_text bytes.
+// Prints a value; gives the end of the text. `out` has room for kLongestNumber bytes.
 char* print_number(char* out, double value, const NumberFormat& format);
 
 }  // namespace mocapress

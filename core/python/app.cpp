@@ -1,4 +1,3 @@
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/vector.h>
 
 #include <stdexcept>
@@ -11,17 +10,10 @@
 namespace mocapress {
 namespace {
 
-namespace nb = nanobind;
+// Parent, precision, line, digits.
+using AppPlan = Plan<std::int32_t, 4>;
 
-using Matrix = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Output = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Integers = nb::ndarray<const std::int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using IntegerOutput = nb::ndarray<std::int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Table = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-// (C, 4): parent, precision, line, digits
-using Plan = nb::ndarray<const std::int32_t, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
-
-std::vector<app::Column> columns_of(const Plan& plan, std::size_t count) {
+std::vector<app::Column> columns_of(const AppPlan& plan, std::size_t count) {
   if (plan.shape(0) != count) throw std::invalid_argument("the plan is not for these columns");
   std::vector<app::Column> columns(count);
   for (std::size_t c = 0; c < count; ++c) {
@@ -32,7 +24,8 @@ std::vector<app::Column> columns_of(const Plan& plan, std::size_t count) {
   return columns;
 }
 
-app::Parameters parameters_of(const Table& alphas, std::size_t cluster, int mantissa_limit) {
+app::Parameters parameters_of(const Input<double, 1>& alphas, std::size_t cluster,
+                              int mantissa_limit) {
   const std::size_t size = alphas.shape(0);
   if (size == 0 || size > 256 || (size & (size - 1)) != 0 || cluster == 0) {
     throw std::invalid_argument("no table of 2^k alphas, k <= 8, or clusters of no frames");
@@ -40,14 +33,8 @@ app::Parameters parameters_of(const Table& alphas, std::size_t cluster, int mant
   return {{alphas.data(), size}, cluster, mantissa_limit};
 }
 
-nb::bytes to_python(const Bytes& bytes) { return nb::bytes(bytes.data(), bytes.size()); }
-
-ByteView view(const nb::bytes& bytes) {
-  return {static_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
-}
-
-nb::bytes encode(const Matrix& values, const Plan& plan, const Table& alphas, std::size_t cluster,
-                 int mantissa_limit) {
+nb::bytes encode(const Input<double, 2>& values, const AppPlan& plan,
+                 const Input<double, 1>& alphas, std::size_t cluster, int mantissa_limit) {
   const auto columns = columns_of(plan, values.shape(1));
   const auto parameters = parameters_of(alphas, cluster, mantissa_limit);
   Bytes payload;
@@ -58,8 +45,8 @@ nb::bytes encode(const Matrix& values, const Plan& plan, const Table& alphas, st
   return to_python(payload);
 }
 
-void decode(const nb::bytes& payload, const Output& values, const Plan& plan, const Table& alphas,
-            std::size_t cluster, int mantissa_limit) {
+void decode(const nb::bytes& payload, const Output<double, 2>& values, const AppPlan& plan,
+            const Input<double, 1>& alphas, std::size_t cluster, int mantissa_limit) {
   const auto columns = columns_of(plan, values.shape(1));
   const auto parameters = parameters_of(alphas, cluster, mantissa_limit);
   const ByteView bytes = view(payload);
@@ -67,7 +54,7 @@ void decode(const nb::bytes& payload, const Output& values, const Plan& plan, co
   app::decode(bytes, values.data(), values.shape(0), columns, parameters);
 }
 
-std::vector<int> precisions(const Matrix& values, const Plan& plan) {
+std::vector<int> precisions(const Input<double, 2>& values, const AppPlan& plan) {
   const auto columns = columns_of(plan, values.shape(1));
   std::vector<int> found;
   nb::gil_scoped_release unlocked;
@@ -77,22 +64,23 @@ std::vector<int> precisions(const Matrix& values, const Plan& plan) {
   return found;
 }
 
-std::vector<double> ideal_alphas(const Matrix& values, const Plan& plan, std::size_t cluster) {
+std::vector<double> ideal_alphas(const Input<double, 2>& values, const AppPlan& plan,
+                                 std::size_t cluster) {
   const auto columns = columns_of(plan, values.shape(1));
   if (cluster == 0) throw std::invalid_argument("clusters of no frames");
   nb::gil_scoped_release unlocked;
   return app::ideal_alphas(values.data(), values.shape(0), columns, cluster);
 }
 
-double prediction_error(const Matrix& values, const Plan& plan, const Table& alphas,
-                        std::size_t cluster) {
+double prediction_error(const Input<double, 2>& values, const AppPlan& plan,
+                        const Input<double, 1>& alphas, std::size_t cluster) {
   const auto columns = columns_of(plan, values.shape(1));
   const auto parameters = parameters_of(alphas, cluster, 0);
   nb::gil_scoped_release unlocked;
   return app::prediction_error(values.data(), values.shape(0), columns, parameters);
 }
 
-void snap_columns(const Output& values, const Plan& plan) {
+void snap_columns(const Output<double, 2>& values, const AppPlan& plan) {
   const auto columns = columns_of(plan, values.shape(1));
   nb::gil_scoped_release unlocked;
   std::vector<NumberLine> lines;
@@ -102,7 +90,7 @@ void snap_columns(const Output& values, const Plan& plan) {
   }
 }
 
-nb::bytes encode_differences(const Integers& differences) {
+nb::bytes encode_differences(const Input<std::int64_t, 1>& differences) {
   Bytes coded;
   {
     nb::gil_scoped_release unlocked;
@@ -116,7 +104,7 @@ nb::bytes encode_differences(const Integers& differences) {
   return to_python(coded);
 }
 
-void decode_differences(const nb::bytes& coded, const IntegerOutput& differences) {
+void decode_differences(const nb::bytes& coded, const Output<std::int64_t, 1>& differences) {
   RangeReading side(view(coded));
   nb::gil_scoped_release unlocked;
   Difference<7> difference;
@@ -128,19 +116,32 @@ void decode_differences(const nb::bytes& coded, const IntegerOutput& differences
 
 }  // namespace
 
-void bind_app(nanobind::module_& module) {
-  module.def("app_precisions", &precisions, nb::arg("values"), nb::arg("plan"));
-  module.def("app_encode", &encode, nb::arg("values"), nb::arg("plan"), nb::arg("alphas"),
-             nb::arg("cluster"), nb::arg("mantissa_limit"));
-  module.def("app_decode", &decode, nb::arg("payload"), nb::arg("values"), nb::arg("plan"),
-             nb::arg("alphas"), nb::arg("cluster"), nb::arg("mantissa_limit"));
-  module.def("app_ideal_alphas", &ideal_alphas, nb::arg("values"), nb::arg("plan"),
-             nb::arg("cluster"));
-  module.def("app_prediction_error", &prediction_error, nb::arg("values"), nb::arg("plan"),
-             nb::arg("alphas"), nb::arg("cluster"));
-  module.def("snap", &snap_columns, nb::arg("values"), nb::arg("plan"));
-  module.def("encode_differences", &encode_differences, nb::arg("differences"));
-  module.def("decode_differences", &decode_differences, nb::arg("coded"), nb::arg("differences"));
+void bind_app(nb::module_& module) {
+  const auto values = nb::arg("values");
+  const auto plan = nb::arg("plan");
+  const auto alphas = nb::arg("alphas");
+  const auto cluster = nb::arg("cluster");
+  const auto mantissa_limit = nb::arg("mantissa_limit");
+  const auto filled = nb::arg("values").noconvert();
+  module.def("app_precisions", &precisions, values, plan,
+             "Give the most compact precision of each column that keeps all its values.\n\n"
+             "A plan has parent column or -1, precision, line and digits of each column: see\n"
+             "core/app/codec.hpp and core/numbers/line.hpp.");
+  module.def("app_encode", &encode, values, plan, alphas, cluster, mantissa_limit,
+             "Code rows of values as a chunk; ``cluster`` in frames.");
+  module.def("app_decode", &decode, nb::arg("payload"), filled, plan, alphas, cluster,
+             mantissa_limit, "Fill ``values`` from a chunk; ValueError where it is none.");
+  module.def("app_ideal_alphas", &ideal_alphas, values, plan, cluster,
+             "Give the alpha of least squared error of each cluster and column, row by row.");
+  module.def("app_prediction_error", &prediction_error, values, plan, alphas, cluster,
+             "Give the sum of what the values differ from their predictions by.");
+  module.def("snap", &snap_columns, filled, plan,
+             "Move values to the nearest numbers of their columns' lines, in place.");
+  module.def("encode_differences", &encode_differences, nb::arg("differences"),
+             "Code whole numbers, most of them small.");
+  module.def("decode_differences", &decode_differences, nb::arg("coded"),
+             nb::arg("differences").noconvert(),
+             "Fill ``differences``; ValueError where ``coded`` is not so many.");
 }
 
 }  // namespace mocapress

@@ -1,4 +1,3 @@
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/tuple.h>
 
 #include <stdexcept>
@@ -10,63 +9,62 @@
 namespace mocapress {
 namespace {
 
-namespace nb = nanobind;
-
-using Values = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Output = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Table = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
-
 diffma::Parameters parameters_of(int bits, std::size_t window, double bound, int order) {
-  if (bits < 1 || bits > diffma::most_bits || window == 0 || !(bound > 0) || order < 0 ||
-      order > diffma::most_order) {
+  if (bits < 1 || bits > diffma::kMostBits || window == 0 || !(bound > 0) || order < 0 ||
+      order > diffma::kMostOrder) {
     throw std::invalid_argument("no such parameters");
   }
   return {bits, window, bound, order};
 }
 
-std::string_view view(const nb::bytes& bytes) { return {bytes.c_str(), bytes.size()}; }
-
-std::tuple<nb::bytes, Table, double> encode(const Values& values, int bits, std::size_t window,
-                                            double bound, int order, double tolerance,
-                                            double round_offset, double max_error,
-                                            bool spare_signs) {
+std::tuple<nb::bytes, Given<double>, double> encode(const Input<double, 1>& values, int bits,
+                                                    std::size_t window, double bound, int order,
+                                                    double tolerance, double round_offset,
+                                                    double max_error, bool spare_signs) {
   const auto parameters = parameters_of(bits, window, bound, order);
-  // Moved to the heap, where NumPy keeps it as long as it needs it.
-  auto* record = new diffma::Record;
-  nb::capsule owner(record, [](void* p) noexcept { delete static_cast<diffma::Record*>(p); });
+  diffma::Record record;
   {
-    nb::gil_scoped_release unlocked;
-    *record = diffma::encode({values.data(), values.size()}, parameters,
-                             {tolerance, round_offset, max_error, spare_signs});
+    const nb::gil_scoped_release unlocked;
+    record = diffma::encode({values.data(), values.size()}, parameters,
+                            {tolerance, round_offset, max_error, spare_signs});
   }
-  return {nb::bytes(record->opcodes.data(), record->opcodes.size()),
-          Table(record->table.data(), {record->table.size()}, owner), record->squared_error};
+  return {nb::bytes(record.opcodes.data(), record.opcodes.size()), give(std::move(record.table)),
+          record.squared_error};
 }
 
 // Steps, raws, fault and the character it stands at.
 std::tuple<std::size_t, std::size_t, int, std::size_t> scan(const nb::bytes& opcodes, int bits) {
-  if (bits < 1 || bits > diffma::most_bits) throw std::invalid_argument("no such parameters");
-  const auto found = diffma::scan(view(opcodes), bits);
+  if (bits < 1 || bits > diffma::kMostBits) throw std::invalid_argument("no such parameters");
+  const auto found = diffma::scan(text_of(opcodes), bits);
   return {found.steps, found.raws, static_cast<int>(found.fault), found.fault_at};
 }
 
-void decode(const nb::bytes& opcodes, const Values& table, const Output& values, int bits,
-            std::size_t window, double bound, int order) {
+void decode(const nb::bytes& opcodes, const Input<double, 1>& table,
+            const Output<double, 1>& values, int bits, std::size_t window, double bound,
+            int order) {
   const auto parameters = parameters_of(bits, window, bound, order);
-  const auto text = view(opcodes);
+  const auto text = text_of(opcodes);
   nb::gil_scoped_release unlocked;
   diffma::decode(text, {table.data(), table.size()}, parameters, {values.data(), values.size()});
 }
 
 }  // namespace
 
-void bind_diffma(nanobind::module_& module) {
-  module.def("diffma_encode", &encode, nb::arg("values"), nb::arg("bits"), nb::arg("window"),
-             nb::arg("bound"), nb::arg("order"), nb::arg("tolerance"), nb::arg("round_offset"),
-             nb::arg("max_error"), nb::arg("spare_signs"));
-  module.def("diffma_scan", &scan, nb::arg("opcodes"), nb::arg("bits"));
-  module.def("diffma_decode", &decode, nb::arg("opcodes"), nb::arg("table"), nb::arg("values"),
-             nb::arg("bits"), nb::arg("window"), nb::arg("bound"), nb::arg("order"));
+void bind_diffma(nb::module_& module) {
+  const auto bits = nb::arg("bits");
+  const auto window = nb::arg("window");
+  const auto bound = nb::arg("bound");
+  const auto order = nb::arg("order");
+  module.def("diffma_encode", &encode, nb::arg("values"), bits, window, bound, order,
+             nb::arg("tolerance"), nb::arg("round_offset"), nb::arg("max_error"),
+             nb::arg("spare_signs"),
+             "Give one channel as opcodes and a look-up table, and the sum of squared errors.");
+  module.def("diffma_scan", &scan, nb::arg("opcodes"), bits,
+             "Give how many steps and raw numbers opcodes ask for; a fault, and where it is.\n\n"
+             "Faults: core/diffma/codec.hpp; 0 is none.");
+  module.def("diffma_decode", &decode, nb::arg("opcodes"), nb::arg("table"),
+             nb::arg("values").noconvert(), bits, window, bound, order,
+             "Fill ``values``; ValueError where opcodes, table and their number do not agree.");
 }
 
 }  // namespace mocapress

@@ -1,4 +1,3 @@
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -20,16 +19,13 @@
 namespace mocapress {
 namespace {
 
-namespace nb = nanobind;
-
-using Matrix = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Output = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-// (C, 6): line, digits, noise, exponent, turns, place
-using Plan = nb::ndarray<const std::int32_t, nb::shape<-1, 6>, nb::c_contig, nb::device::cpu>;
+// Line, digits, noise, exponent, turns, place.
+using ExactPlan = Plan<std::int32_t, 6>;
+// Kind, sources, targets, parameters.
 using Couplings = std::vector<
     std::tuple<int, std::vector<std::uint16_t>, std::vector<std::uint16_t>, std::vector<double>>>;
 
-std::vector<exact::Column> columns_of(const Plan& plan, std::size_t count) {
+std::vector<exact::Column> columns_of(const ExactPlan& plan, std::size_t count) {
   if (plan.shape(0) != count) throw std::invalid_argument("the plan is not for these columns");
   std::vector<exact::Column> columns(count);
   for (std::size_t c = 0; c < count; ++c) {
@@ -76,7 +72,8 @@ std::vector<exact::Coupling> couplings_of(const Couplings& told,
 
 // The arguments that say how a clip is coded, and what they refer to.
 struct Told {
-  Told(const Plan& plan, std::size_t count, const Couplings& told, int level, exact::Start start)
+  Told(const ExactPlan& plan, std::size_t count, const Couplings& told, int level,
+       exact::Start start)
       : columns(columns_of(plan, count)),
         couplings(couplings_of(told, columns)),
         start(checked(std::move(start))),
@@ -100,8 +97,9 @@ struct Told {
 
 using Learned = std::pair<std::vector<float>, std::vector<std::vector<float>>>;
 
-auto encode(const Matrix& values, const Plan& plan, const Couplings& couplings, int level,
-            Learned start, bool learn) {
+std::tuple<nb::bytes, Learned> encode(const Input<double, 2>& values, const ExactPlan& plan,
+                                      const Couplings& couplings, int level, Learned start,
+                                      bool learn) {
   const Told arguments(plan, values.shape(1), couplings, level,
                        {std::move(start.first), std::move(start.second)});
   Bytes payload;
@@ -111,20 +109,19 @@ auto encode(const Matrix& values, const Plan& plan, const Couplings& couplings, 
     payload =
         exact::encode(values.data(), values.shape(0), arguments.clip, learn ? &learned : nullptr);
   }
-  return nb::make_tuple(nb::bytes(payload.data(), payload.size()),
-                        Learned(std::move(learned.shared), std::move(learned.columns)));
+  return {to_python(payload), {std::move(learned.shared), std::move(learned.columns)}};
 }
 
-void decode(const nb::bytes& payload, const Output& values, const Plan& plan,
+void decode(const nb::bytes& payload, const Output<double, 2>& values, const ExactPlan& plan,
             const Couplings& couplings, int level, Learned start, bool whole) {
   const Told arguments(plan, values.shape(1), couplings, level,
                        {std::move(start.first), std::move(start.second)});
-  const ByteView bytes{static_cast<const std::uint8_t*>(payload.data()), payload.size()};
+  const ByteView bytes = view(payload);
   nb::gil_scoped_release unlocked;
   exact::decode(bytes, values.data(), values.shape(0), arguments.clip, whole);
 }
 
-std::vector<std::pair<int, int>> lines(const Matrix& values) {
+std::vector<std::pair<int, int>> lines(const Input<double, 2>& values) {
   std::vector<std::pair<int, int>> found;
   nb::gil_scoped_release unlocked;
   for (const auto& line : coarsest_lines(values.data(), values.shape(0), values.shape(1))) {
@@ -135,7 +132,7 @@ std::vector<std::pair<int, int>> lines(const Matrix& values) {
 
 // What a law has for the targets, (F, T) degrees, where they are known; `columns` are sources,
 // targets.
-auto law(int kind, const Matrix& columns) {
+Given<double, 2> law(int kind, const Input<double, 2>& columns) {
   if (kind < 1 || kind > static_cast<int>(exact::LawKind::neck_middle) ||
       kind == exact::Joint::kKind) {
     throw std::invalid_argument("a law of unknown kind");
@@ -147,8 +144,7 @@ auto law(int kind, const Matrix& columns) {
     throw std::invalid_argument("not the columns of this law");
   }
   const std::size_t rows = columns.shape(0);
-  auto* told = new double[rows * targets];
-  const nb::capsule owner(told, [](void* data) noexcept { delete[] static_cast<double*>(data); });
+  std::vector<double> told(rows * targets);
   exact::Law found(named);
   for (std::size_t row = 0; row < rows; ++row) {
     const double* angles = columns.data() + row * columns.shape(1);
@@ -157,13 +153,13 @@ auto law(int kind, const Matrix& columns) {
       told[row * targets + t] = found.predict(t, angles + sources);
     }
   }
-  return nb::ndarray<nb::numpy, double, nb::ndim<2>>(told, {rows, targets}, owner);
+  return give(std::move(told), std::array{rows, targets});
 }
 
 // The second differences, (F, C), that the skeleton's geometry has for channels at these places of
 // it, where the rows before each, and the channels before it in its own, are known; before the
 // first row it was as it is there.
-auto guesses(const Matrix& values, const std::vector<int>& places) {
+Given<double, 2> guesses(const Input<double, 2>& values, const std::vector<int>& places) {
   const std::size_t count = values.shape(1);
   if (places.size() != count) throw std::invalid_argument("not one place per column");
   std::vector<exact::Column> columns;
@@ -171,8 +167,7 @@ auto guesses(const Matrix& values, const std::vector<int>& places) {
   exact::Kinematics kinematics(columns);
   exact::Frames frames(count);
   const std::size_t rows = values.shape(0);
-  auto* told = new double[rows * count]();
-  const nb::capsule owner(told, [](void* data) noexcept { delete[] static_cast<double*>(data); });
+  std::vector<double> told(rows * count);
   for (std::size_t row = 0; row < rows; ++row) {
     const double* numbers = values.data() + row * count;
     for (int age = 0; row == 0 && age < exact::Frames::kKept; ++age) {
@@ -186,17 +181,36 @@ auto guesses(const Matrix& values, const std::vector<int>& places) {
       frames.set(c, numbers[c]);
     }
   }
-  return nb::ndarray<nb::numpy, double, nb::ndim<2>>(told, {rows, count}, owner);
+  return give(std::move(told), std::array{rows, count});
 }
 
 }  // namespace
 
 void bind_exact(nb::module_& module) {
-  module.def("exact_encode", &encode);
-  module.def("exact_decode", &decode);
-  module.def("exact_lines", &lines);
-  module.def("exact_law", &law);
-  module.def("exact_guesses", &guesses);
+  const auto values = nb::arg("values");
+  const auto plan = nb::arg("plan");
+  const auto couplings = nb::arg("couplings");
+  const auto level = nb::arg("level");
+  const auto start = nb::arg("start");
+  module.def(
+      "exact_encode", &encode, values, plan, couplings, level, start, nb::arg("learn"),
+      "Code rows of values as a chunk; give what was learned, too, where ``learn``.\n\n"
+      "A plan has line, digits, noise, exponent, turns and place of each column, a coupling\n"
+      "kind, sources, targets and parameters: see core/exact/codec.hpp.");
+  module.def("exact_decode", &decode, nb::arg("payload"), nb::arg("values").noconvert(), plan,
+             couplings, level, start, nb::arg("whole"),
+             "Fill ``values`` from a chunk; ValueError where it is none.\n\n"
+             "Unless ``whole``, these are only the chunk's first frames.");
+  module.def("exact_lines", &lines, values,
+             "Give the coarsest line that holds each column, and its digits.");
+  module.def(
+      "exact_law", &law, nb::arg("kind"), nb::arg("columns"),
+      "Give what a law has for its targets, (F, T) degrees, where those before are known.\n\n"
+      "The columns are those of its sources and targets, in degrees.");
+  module.def("exact_guesses", &guesses, values, nb::arg("places"),
+             "Give the second differences that the skeleton's geometry has, (F, C).\n\n"
+             "The channels are at these places of the skeleton; the rows before each, and the\n"
+             "channels before it in its own, are known.");
 }
 
 }  // namespace mocapress

@@ -2,6 +2,7 @@
 #include "python/bindings.hpp"
 
 NB_MODULE(_core, module) {
+  module.doc() = "The compiled kernels; arrays are C-contiguous.";
   mocapress::bind_rows(module);
   mocapress::bind_app(module);
   mocapress::bind_exact(module);

@@ -1,10 +1,6 @@
 // Python's view of numbers/text.hpp and formats/rows.hpp.
-//
-// Number formats travel as a (C, 6) uint8 array: kind, digits, exponent_digits, point_zero,
-// bare_point, upper.
 #include "formats/rows.hpp"
 
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -16,114 +12,102 @@
 #include "numbers/text.hpp"
 #include "python/bindings.hpp"
 
-namespace nb = nanobind;
-
 namespace mocapress {
 namespace {
 
-using Values = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Formats = nb::ndarray<const uint8_t, nb::shape<-1, 6>, nb::c_contig, nb::device::cpu>;
-template <typename T>
-using Input = nb::ndarray<const T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+// Kind, digits, exponent_digits, point_zero, bare_point, upper.
+using Formats = Plan<std::uint8_t, 6>;
 // counter, literals, columns, widths
 using TemplateTuple =
-    std::tuple<bool, std::vector<nb::bytes>, std::vector<uint32_t>, std::vector<uint8_t>>;
+    std::tuple<bool, std::vector<nb::bytes>, std::vector<std::uint32_t>, std::vector<std::uint8_t>>;
 
-std::string_view view(const nb::bytes& bytes) { return {bytes.c_str(), bytes.size()}; }
-
-// Hands a vector over to NumPy without a copy.
-template <typename T>
-nb::ndarray<nb::numpy, T> give(std::vector<T>&& data, std::vector<size_t> shape) {
-  auto owned = std::make_unique<std::vector<T>>(std::move(data));
-  T* const pointer = owned->data();
-  nb::capsule owner(owned.release(),
-                    [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-  return nb::ndarray<nb::numpy, T>(pointer, shape.size(), shape.data(), owner);
-}
-
-template <typename T>
-nb::ndarray<nb::numpy, T> give(std::vector<T>&& data) {
-  const size_t size = data.size();
-  return give(std::move(data), {size});
-}
-
-NumberFormat number_format(const uint8_t* f) {
-  if (f[0] > 5 || f[1] > max_digits || f[2] > 8 || (f[0] == 0 && (f[1] < 1 || f[1] > 17)))
+NumberFormat number_format(const std::uint8_t* f) {
+  if (f[0] > 5 || f[1] > kMostDigits || f[2] > 8 || (f[0] == 0 && (f[1] < 1 || f[1] > 17)))
     throw nb::value_error("no such number format");
   return {static_cast<NumberKind>(f[0]), f[1], f[2], f[3] != 0, f[4] != 0, f[5] != 0};
 }
 
 std::vector<NumberFormat> number_formats(const Formats& formats) {
   std::vector<NumberFormat> list(formats.shape(0));
-  for (size_t c = 0; c < list.size(); ++c) list[c] = number_format(formats.data() + 6 * c);
+  for (std::size_t c = 0; c < list.size(); ++c) list[c] = number_format(formats.data() + 6 * c);
   return list;
 }
 
-std::vector<RowTemplate> row_templates(const std::vector<TemplateTuple>& tuples, size_t columns) {
+std::vector<RowTemplate> row_templates(const std::vector<TemplateTuple>& tuples,
+                                       std::size_t columns) {
   std::vector<RowTemplate> templates;
   for (const auto& [counter, literals, slots, widths] : tuples) {
     if (literals.size() != slots.size() + 1 + counter || widths.size() != slots.size())
       throw nb::value_error("row template of mismatched parts");
     RowTemplate row{counter, {}, slots, widths};
-    for (const auto& literal : literals) row.literals.emplace_back(view(literal));
-    for (const uint32_t column : slots)
+    for (const auto& literal : literals) row.literals.emplace_back(text_of(literal));
+    for (const std::uint32_t column : slots)
       if (column >= columns) throw nb::value_error("row template names a column that is not there");
     templates.push_back(std::move(row));
   }
   return templates;
 }
 
-auto bound_parse_rows(const nb::bytes& data, uint64_t begin, bool counter,
-                      const std::vector<nb::bytes>& words, std::vector<uint32_t> counts,
-                      uint64_t most_rows) {
+using Parsed = std::tuple<Given<double, 2>, Given<std::int64_t>, Given<std::uint64_t>,
+                          Given<std::uint8_t, 2>, int, std::size_t, std::size_t>;
+
+Parsed bound_parse_rows(const nb::bytes& data, std::uint64_t begin, bool counter,
+                        const std::vector<nb::bytes>& words, std::vector<std::uint32_t> counts,
+                        std::uint64_t most_rows) {
   if (words.size() != counts.size() || begin > data.size())
     throw nb::value_error("row shape of mismatched parts");
   RowShape shape{counter, {}, std::move(counts)};
-  for (const auto& word : words) shape.words.emplace_back(view(word));
-  const size_t columns = shape.columns();
+  for (const auto& word : words) shape.words.emplace_back(text_of(word));
+  const std::size_t columns = shape.columns();
   ParsedRows rows;
   {
     const nb::gil_scoped_release release;
-    rows = parse_rows(view(data), begin, shape, most_rows);
+    rows = parse_rows(text_of(data), begin, shape, most_rows);
   }
-  std::vector<uint8_t> statistics;
+  std::vector<std::uint8_t> statistics;
   for (const auto& column : rows.statistics)
     statistics.insert(statistics.end(),
                       {column.least_decimals, column.most_decimals, column.most_significant,
                        column.exponent_digits, column.trailing_zero, column.whole_without_point,
                        column.bare_point, column.upper});
-  const size_t count = rows.offsets.size() - 1;
-  return nb::make_tuple(give(std::move(rows.values), {count, columns}),
-                        give(std::move(rows.counters)), give(std::move(rows.offsets)),
-                        give(std::move(statistics), {columns, 8}), static_cast<int>(rows.end),
-                        rows.error_offset, rows.error_item);
+  const std::size_t count = rows.offsets.size() - 1;
+  return {give(std::move(rows.values), std::array{count, columns}),
+          give(std::move(rows.counters)),
+          give(std::move(rows.offsets)),
+          give(std::move(statistics), std::array{columns, std::size_t{8}}),
+          static_cast<int>(rows.end),
+          rows.error_offset,
+          rows.error_item};
 }
 
 // Compares the selected rows with one template.
-auto bound_match_rows(const nb::bytes& data, const Input<uint64_t>& offsets,
-                      const Input<int64_t>& counters, const Values& values,
-                      const Input<int64_t>& selected, const TemplateTuple& tuple,
-                      const Formats& formats) {
-  const size_t rows = values.shape(0);
-  const size_t columns = values.shape(1);
+using Matched = std::tuple<Given<std::uint8_t>, Given<std::uint64_t>, Given<std::uint32_t>,
+                           std::vector<nb::bytes>>;
+
+Matched bound_match_rows(const nb::bytes& data, const Input<std::uint64_t, 1>& offsets,
+                         const Input<std::int64_t, 1>& counters, const Input<double, 2>& values,
+                         const Input<std::int64_t, 1>& selected, const TemplateTuple& tuple,
+                         const Formats& formats) {
+  const std::size_t rows = values.shape(0);
+  const std::size_t columns = values.shape(1);
   if (offsets.shape(0) != rows + 1 || formats.shape(0) != columns ||
       (counters.shape(0) != rows && (counters.shape(0) != 0 || std::get<0>(tuple))))
     throw nb::value_error("arrays of mismatched lengths");
   const RowTemplate row = row_templates({tuple}, columns)[0];
   const auto list = number_formats(formats);
-  const std::string_view text = view(data);
-  std::vector<uint8_t> matched(selected.shape(0));
-  std::vector<uint64_t> cell_rows;
-  std::vector<uint32_t> cell_slots;
+  const std::string_view text = text_of(data);
+  std::vector<std::uint8_t> matched(selected.shape(0));
+  std::vector<std::uint64_t> cell_rows;
+  std::vector<std::uint32_t> cell_slots;
   std::vector<std::string_view> cell_texts;
   {
     const nb::gil_scoped_release release;
     std::vector<SlotText> differing;
-    for (size_t i = 0; i < matched.size(); ++i) {
-      const auto r = static_cast<uint64_t>(selected.data()[i]);
+    for (std::size_t i = 0; i < matched.size(); ++i) {
+      const auto r = static_cast<std::uint64_t>(selected.data()[i]);
       if (r >= rows) throw std::out_of_range("no such row");
-      const uint64_t from = offsets.data()[r];
-      const uint64_t to = offsets.data()[r + 1];
+      const std::uint64_t from = offsets.data()[r];
+      const std::uint64_t to = offsets.data()[r + 1];
       if (from > to || to > text.size()) throw std::out_of_range("row outside the data");
       if (!match_row(text.substr(from, to - from), row, values.data() + r * columns,
                      row.counter ? counters.data()[r] : 0, list.data(), differing))
@@ -136,21 +120,24 @@ auto bound_match_rows(const nb::bytes& data, const Input<uint64_t>& offsets,
       }
     }
   }
-  nb::list texts;
-  for (const auto& cell : cell_texts) texts.append(nb::bytes(cell.data(), cell.size()));
-  return nb::make_tuple(give(std::move(matched)), give(std::move(cell_rows)),
-                        give(std::move(cell_slots)), texts);
+  std::vector<nb::bytes> texts;
+  texts.reserve(cell_texts.size());
+  for (const auto& cell : cell_texts) texts.emplace_back(cell.data(), cell.size());
+  return {give(std::move(matched)), give(std::move(cell_rows)), give(std::move(cell_slots)),
+          std::move(texts)};
 }
 
 // Stops once it has printed more than `most_bytes`. Cells are sorted by row, then slot; whole rows
 // (template -1) take their bytes from `raw`, in order.
-nb::bytes bound_print_rows(const Values& values, const Input<int64_t>& counters,
-                           const Input<int32_t>& assigned, const std::vector<TemplateTuple>& tuples,
-                           const Formats& formats, const Input<uint64_t>& cell_rows,
-                           const Input<uint32_t>& cell_slots, const std::vector<nb::bytes>& cells,
-                           const std::vector<nb::bytes>& raw, uint64_t most_bytes) {
-  const size_t rows = values.shape(0);
-  const size_t columns = values.shape(1);
+nb::bytes bound_print_rows(const Input<double, 2>& values, const Input<std::int64_t, 1>& counters,
+                           const Input<std::int32_t, 1>& assigned,
+                           const std::vector<TemplateTuple>& tuples, const Formats& formats,
+                           const Input<std::uint64_t, 1>& cell_rows,
+                           const Input<std::uint32_t, 1>& cell_slots,
+                           const std::vector<nb::bytes>& cells, const std::vector<nb::bytes>& raw,
+                           std::uint64_t most_bytes) {
+  const std::size_t rows = values.shape(0);
+  const std::size_t columns = values.shape(1);
   if (assigned.shape(0) != rows || formats.shape(0) != columns ||
       (counters.shape(0) != rows && counters.shape(0) != 0) || cell_rows.shape(0) != cells.size() ||
       cell_slots.shape(0) != cells.size())
@@ -159,23 +146,23 @@ nb::bytes bound_print_rows(const Values& values, const Input<int64_t>& counters,
   const auto list = number_formats(formats);
   std::vector<std::string_view> cell_views;
   std::vector<std::string_view> raw_views;
-  for (const auto& cell : cells) cell_views.push_back(view(cell));
-  for (const auto& row : raw) raw_views.push_back(view(row));
+  for (const auto& cell : cells) cell_views.push_back(text_of(cell));
+  for (const auto& row : raw) raw_views.push_back(text_of(row));
   std::string out;
   {
     const nb::gil_scoped_release release;
-    size_t cell = 0;
-    size_t next_raw = 0;
+    std::size_t cell = 0;
+    std::size_t next_raw = 0;
     std::vector<SlotText> replaced;
-    for (size_t r = 0; r < rows; ++r) {
+    for (std::size_t r = 0; r < rows; ++r) {
       if (out.size() > most_bytes) break;
-      const int32_t index = assigned.data()[r];
+      const std::int32_t index = assigned.data()[r];
       if (index < 0) {
         if (next_raw == raw_views.size()) throw std::out_of_range("a row has no template");
         out += raw_views[next_raw++];
         continue;
       }
-      if (static_cast<size_t>(index) >= templates.size() ||
+      if (static_cast<std::size_t>(index) >= templates.size() ||
           (templates[index].counter && counters.shape(0) == 0))
         throw std::out_of_range("a row has no template");
       replaced.clear();
@@ -191,9 +178,28 @@ nb::bytes bound_print_rows(const Values& values, const Input<int64_t>& counters,
 }  // namespace
 
 void bind_rows(nb::module_& module) {
-  module.def("parse_rows", &bound_parse_rows);
-  module.def("match_rows", &bound_match_rows);
-  module.def("print_rows", &bound_print_rows);
+  const auto data = nb::arg("data");
+  const auto counters = nb::arg("counters");
+  const auto values = nb::arg("values");
+  const auto formats = nb::arg("formats");
+  module.def(
+      "parse_rows", &bound_parse_rows, data, nb::arg("begin"), nb::arg("counter"), nb::arg("words"),
+      nb::arg("counts"), nb::arg("most_rows"),
+      "Read rows from ``begin`` on: each a counter if any, then words with their numbers.\n\n"
+      "Gives values, counters, offsets, statistics of the columns (see formats/rows.hpp), how\n"
+      "it ended, and at which offset and item.");
+  module.def("match_rows", &bound_match_rows, data, nb::arg("offsets"), counters, values,
+             nb::arg("selected"), nb::arg("template"), formats,
+             "Compare rows with a template: its counter, literals, columns and widths.\n\n"
+             "A format has kind, digits, exponent_digits, point_zero, bare_point and upper. Gives\n"
+             "which of the selected rows match, and the row, slot and text of numbers written\n"
+             "otherwise.");
+  module.def("print_rows", &bound_print_rows, values, counters, nb::arg("assigned"),
+             nb::arg("templates"), formats, nb::arg("cell_rows"), nb::arg("cell_slots"),
+             nb::arg("cells"), nb::arg("raw"), nb::arg("most_bytes"),
+             "Print rows, each by the template assigned to it, until there are too many bytes.\n\n"
+             "Cells, in order, stand for the numbers at their slots; rows without a template (-1)\n"
+             "are the next of ``raw``.");
 }
 
 }  // namespace mocapress

@@ -1,120 +1,114 @@
-"""The compiled kernels."""
+"""The compiled kernels; arrays are C-contiguous."""
 
-import numpy as np
+from collections.abc import Sequence
+from typing import Annotated
+
+import numpy
 from numpy.typing import NDArray
 
-# Row templates are (counter, literals, columns, widths); formats are (C, 6) uint8: kind, digits,
-# exponent_digits, point_zero, bare_point, upper; see core/formats/rows.hpp, core/numbers/text.hpp.
-_Template = tuple[bool, list[bytes], list[int], list[int]]
 
-def parse_rows(
-    data: bytes, begin: int, counter: bool, words: list[bytes], counts: list[int], most_rows: int
-) -> tuple[
-    NDArray[np.float64],
-    NDArray[np.int64],
-    NDArray[np.uint64],
-    NDArray[np.uint8],
-    int,
-    int,
-    int,
-]: ...
-def match_rows(
-    data: bytes,
-    offsets: NDArray[np.uint64],
-    counters: NDArray[np.int64],
-    values: NDArray[np.float64],
-    selected: NDArray[np.int64],
-    template: _Template,
-    formats: NDArray[np.uint8],
-) -> tuple[NDArray[np.uint8], NDArray[np.uint64], NDArray[np.uint32], list[bytes]]: ...
-def print_rows(
-    values: NDArray[np.float64],
-    counters: NDArray[np.int64],
-    assigned: NDArray[np.int32],
-    templates: list[_Template],
-    formats: NDArray[np.uint8],
-    cell_rows: NDArray[np.uint64],
-    cell_slots: NDArray[np.uint32],
-    cells: list[bytes],
-    raw: list[bytes],
-    most_bytes: int,
-) -> bytes: ...
+def parse_rows(data: bytes, begin: int, counter: bool, words: Sequence[bytes], counts: Sequence[int], most_rows: int) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None))], Annotated[NDArray[numpy.int64], dict(shape=(None,))], Annotated[NDArray[numpy.uint64], dict(shape=(None,))], Annotated[NDArray[numpy.uint8], dict(shape=(None, None))], int, int, int]:
+    """
+    Read rows from ``begin`` on: each a counter if any, then words with their numbers.
 
-# A plan is (C, 4) int32: parent column or -1, precision, line, digits; see core/app/codec.hpp.
+    Gives values, counters, offsets, statistics of the columns (see formats/rows.hpp), how
+    it ended, and at which offset and item.
+    """
 
-def app_precisions(values: NDArray[np.float64], plan: NDArray[np.int32]) -> list[int]: ...
-def app_encode(
-    values: NDArray[np.float64],
-    plan: NDArray[np.int32],
-    alphas: NDArray[np.float64],
-    cluster: int,
-    mantissa_limit: int,
-) -> bytes: ...
-def app_decode(
-    payload: bytes,
-    values: NDArray[np.float64],
-    plan: NDArray[np.int32],
-    alphas: NDArray[np.float64],
-    cluster: int,
-    mantissa_limit: int,
-) -> None: ...
-def app_ideal_alphas(
-    values: NDArray[np.float64], plan: NDArray[np.int32], cluster: int
-) -> list[float]: ...
-def app_prediction_error(
-    values: NDArray[np.float64],
-    plan: NDArray[np.int32],
-    alphas: NDArray[np.float64],
-    cluster: int,
-) -> float: ...
-def snap(values: NDArray[np.float64], plan: NDArray[np.int32]) -> None: ...
-def encode_differences(differences: NDArray[np.int64]) -> bytes: ...
-def decode_differences(coded: bytes, differences: NDArray[np.int64]) -> None: ...
+def match_rows(data: bytes, offsets: Annotated[NDArray[numpy.uint64], dict(shape=(None,), order='C', device='cpu', writable=False)], counters: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], selected: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], template: tuple[bool, Sequence[bytes], Sequence[int], Sequence[int]], formats: Annotated[NDArray[numpy.uint8], dict(shape=(None, 6), order='C', device='cpu', writable=False)]) -> tuple[Annotated[NDArray[numpy.uint8], dict(shape=(None,))], Annotated[NDArray[numpy.uint64], dict(shape=(None,))], Annotated[NDArray[numpy.uint32], dict(shape=(None,))], list[bytes]]:
+    """
+    Compare rows with a template: its counter, literals, columns and widths.
 
-# A plan is (C, 6) int32: line, digits, noise, exponent, turns, place; couplings are kind,
-# sources, targets, parameters; see core/exact/codec.hpp and core/numbers/line.hpp.
+    A format has kind, digits, exponent_digits, point_zero, bare_point and upper. Gives
+    which of the selected rows match, and the row, slot and text of numbers written
+    otherwise.
+    """
 
-def exact_lines(values: NDArray[np.float64]) -> list[tuple[int, int]]: ...
-def exact_law(kind: int, columns: NDArray[np.float64]) -> NDArray[np.float64]: ...
-def exact_guesses(values: NDArray[np.float64], places: list[int]) -> NDArray[np.float64]: ...
-def exact_encode(
-    values: NDArray[np.float64],
-    plan: NDArray[np.int32],
-    couplings: list[tuple[int, list[int], list[int], list[float]]],
-    level: int,
-    start: tuple[list[float], list[list[float]]],
-    learn: bool,
-) -> tuple[bytes, tuple[list[float], list[list[float]]]]: ...
-def exact_decode(
-    payload: bytes,
-    values: NDArray[np.float64],
-    plan: NDArray[np.int32],
-    couplings: list[tuple[int, list[int], list[int], list[float]]],
-    level: int,
-    start: tuple[list[float], list[list[float]]],
-    whole: bool,
-) -> None: ...
+def print_rows(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], counters: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], assigned: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], templates: Sequence[tuple[bool, Sequence[bytes], Sequence[int], Sequence[int]]], formats: Annotated[NDArray[numpy.uint8], dict(shape=(None, 6), order='C', device='cpu', writable=False)], cell_rows: Annotated[NDArray[numpy.uint64], dict(shape=(None,), order='C', device='cpu', writable=False)], cell_slots: Annotated[NDArray[numpy.uint32], dict(shape=(None,), order='C', device='cpu', writable=False)], cells: Sequence[bytes], raw: Sequence[bytes], most_bytes: int) -> bytes:
+    """
+    Print rows, each by the template assigned to it, until there are too many bytes.
 
-# One channel of DiffMA; see core/diffma/codec.hpp.
+    Cells, in order, stand for the numbers at their slots; rows without a template (-1)
+    are the next of ``raw``.
+    """
 
-def diffma_encode(
-    values: NDArray[np.float64],
-    bits: int,
-    window: int,
-    bound: float,
-    order: int,
-    tolerance: float,
-    round_offset: float,
-    max_error: float,
-    spare_signs: bool,
-) -> tuple[bytes, NDArray[np.float64], float]: ...
-def diffma_scan(opcodes: bytes, bits: int) -> tuple[int, int, int, int]: ...
-def diffma_decode(
-    opcodes: bytes,
-    table: NDArray[np.float64],
-    values: NDArray[np.float64],
-    bits: int,
-    window: int,
-    bound: float,
-    order: int,
-) -> None: ...
+def app_precisions(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)]) -> list[int]:
+    """
+    Give the most compact precision of each column that keeps all its values.
+
+    A plan has parent column or -1, precision, line and digits of each column: see
+    core/app/codec.hpp and core/numbers/line.hpp.
+    """
+
+def app_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], alphas: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], cluster: int, mantissa_limit: int) -> bytes:
+    """Code rows of values as a chunk; ``cluster`` in frames."""
+
+def app_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], alphas: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], cluster: int, mantissa_limit: int) -> None:
+    """Fill ``values`` from a chunk; ValueError where it is none."""
+
+def app_ideal_alphas(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], cluster: int) -> list[float]:
+    """
+    Give the alpha of least squared error of each cluster and column, row by row.
+    """
+
+def app_prediction_error(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], alphas: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], cluster: int) -> float:
+    """Give the sum of what the values differ from their predictions by."""
+
+def snap(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)]) -> None:
+    """Move values to the nearest numbers of their columns' lines, in place."""
+
+def encode_differences(differences: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> bytes:
+    """Code whole numbers, most of them small."""
+
+def decode_differences(coded: bytes, differences: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')]) -> None:
+    """Fill ``differences``; ValueError where ``coded`` is not so many."""
+
+def exact_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 6), order='C', device='cpu', writable=False)], couplings: Sequence[tuple[int, Sequence[int], Sequence[int], Sequence[float]]], level: int, start: tuple[Sequence[float], Sequence[Sequence[float]]], learn: bool) -> tuple[bytes, tuple[list[float], list[list[float]]]]:
+    """
+    Code rows of values as a chunk; give what was learned, too, where ``learn``.
+
+    A plan has line, digits, noise, exponent, turns and place of each column, a coupling
+    kind, sources, targets and parameters: see core/exact/codec.hpp.
+    """
+
+def exact_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 6), order='C', device='cpu', writable=False)], couplings: Sequence[tuple[int, Sequence[int], Sequence[int], Sequence[float]]], level: int, start: tuple[Sequence[float], Sequence[Sequence[float]]], whole: bool) -> None:
+    """
+    Fill ``values`` from a chunk; ValueError where it is none.
+
+    Unless ``whole``, these are only the chunk's first frames.
+    """
+
+def exact_lines(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> list[tuple[int, int]]:
+    """Give the coarsest line that holds each column, and its digits."""
+
+def exact_law(kind: int, columns: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
+    """
+    Give what a law has for its targets, (F, T) degrees, where those before are known.
+
+    The columns are those of its sources and targets, in degrees.
+    """
+
+def exact_guesses(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], places: Sequence[int]) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
+    """
+    Give the second differences that the skeleton's geometry has, (F, C).
+
+    The channels are at these places of the skeleton; the rows before each, and the
+    channels before it in its own, are known.
+    """
+
+def diffma_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bits: int, window: int, bound: float, order: int, tolerance: float, round_offset: float, max_error: float, spare_signs: bool) -> tuple[bytes, Annotated[NDArray[numpy.float64], dict(shape=(None,))], float]:
+    """
+    Give one channel as opcodes and a look-up table, and the sum of squared errors.
+    """
+
+def diffma_scan(opcodes: bytes, bits: int) -> tuple[int, int, int, int]:
+    """
+    Give how many steps and raw numbers opcodes ask for; a fault, and where it is.
+
+    Faults: core/diffma/codec.hpp; 0 is none.
+    """
+
+def diffma_decode(opcodes: bytes, table: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], bits: int, window: int, bound: float, order: int) -> None:
+    """
+    Fill ``values``; ValueError where opcodes, table and their number do not agree.
+    """

@@ -2,6 +2,8 @@
 
 import json
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -273,6 +275,21 @@ def test_version_and_help() -> None:
     helped = mocapress("--help").stdout
     for command in ("compress", "decompress", "train", "info", "verify", "convert", "bench"):
         assert command in helped
+
+
+@pytest.mark.parametrize(
+    "command", ["compress", "decompress", "verify", "info", "convert", "train", "view"]
+)
+def test_help_loads_nothing_heavy(command: str) -> None:
+    code = (
+        "import sys\nfrom mocapress.cli.app import app\n"
+        "try: app(sys.argv[1:])\n"
+        "finally: print({'numpy', 'mocapress.api'} & set(sys.modules), file=sys.stderr)"
+    )
+    words = [sys.executable, "-c", code, command, "--help"]
+    done = subprocess.run(words, capture_output=True, check=True)
+    assert b"--help" in done.stdout
+    assert done.stderr == b"set()\n"
 
 
 def test_shells_can_complete(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -37,6 +37,8 @@ class Job:
     """Whether it was found in a folder that was named."""
     target: Path | None = None
     """Where the output goes, if there is one; ``-`` is stdout."""
+    beside: tuple[str, ...] = ()
+    """Endings of further outputs, of the target's name."""
     force: bool = False
     """Whether files that exist are replaced."""
     times: bool = True
@@ -173,7 +175,8 @@ def _worked(job: Job, work: Callable[[Job], dict[str, Any]], storing: _Storing) 
     like = None
     if files:
         assert job.target is not None
-        check_targets([job.target], force=job.force)
+        more = [job.target.with_suffix(ending) for ending in job.beside]
+        check_targets([job.target, *more], force=job.force)
         like = None if job.source in (STREAM, job.target) else job.source.stat()
     result = work(job)
     if not files:

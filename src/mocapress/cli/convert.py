@@ -54,7 +54,7 @@ def convert(
     from mocapress.cli.models import open_models, places_for
     from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
     from mocapress.container import diffma_json
-    from mocapress.formats import readable, suffixes
+    from mocapress.formats import by_id, readable, suffixes
     from mocapress.motion.convert import with_rate
 
     made = _format(to, output)
@@ -75,10 +75,12 @@ def convert(
         json=json,
         reads=[asf, *(models or [])],
     )
+    for file in files:
+        file.times = False  # what is written is new
+        file.beside = by_id(made.companion).suffixes[:1] if made.companion else ()
 
     def work(job: "Job") -> dict[str, Any]:
         assert job.target is not None
-        job.times = False  # what is written is new
         source = job.opened()
         clip = _read(source, asf, places_for(job, given), strict=not lenient)
         clip = with_rate(clip, fps, needed=made.timed)

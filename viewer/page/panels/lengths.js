@@ -1,6 +1,6 @@
 import { short } from "./curve.js";
 
-/** How lengths of a clip are told: in centimetres where the ASF says what its unit is. */
+/** How to print lengths of a clip: in centimetres if the ASF states its unit. */
 export function lengthText(clip) {
   const unit = clip.skeleton?.lengthUnit;
   // An ASF's `length` times inches; 1 is what files say that do not know.

@@ -65,7 +65,7 @@ export function fromDiffma(document) {
   };
 }
 
-/** What a user is told. */
+/** The message for a user. */
 export function message(error, file) {
   if (error instanceof FileError) return error.of(file).message;
   if (error instanceof DiffmaError) return `${file}: ${error.message}`;

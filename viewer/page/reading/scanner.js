@@ -45,7 +45,7 @@ export class Scanner {
     return at < bytes.length;
   }
 
-  /** Whether the line ends here; if so, go behind it. */
+  /** Whether the line ends here; if so, skip it. */
   lineEnds() {
     this.#passBlanks();
     if (this.position < this.bytes.length && this.bytes[this.position] !== NEWLINE) return false;
@@ -61,7 +61,7 @@ export class Scanner {
     return latin1(this.bytes, begin, this.position);
   }
 
-  /** Whether the next word is this one; if so, go behind it. */
+  /** Whether the next word is this one; if so, skip it. */
   passes(word) {
     this.#passBlanks();
     const { bytes, position } = this;
@@ -114,7 +114,7 @@ export class Scanner {
     return value;
   }
 
-  /** Go behind the end of this line. */
+  /** Skip the rest of this line. */
   toNextLine() {
     while (this.position < this.bytes.length && this.bytes[this.position] !== NEWLINE) {
       this.position++;

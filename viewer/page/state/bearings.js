@@ -22,7 +22,7 @@ const AXES = [
  */
 
 /**
- * Find what other players are told by hand: scale, up axis, floor and extent.
+ * Find what users of other players set by hand: scale, up axis, floor and extent.
  *
  * @param {Float32Array} positions (F, P, 3)
  * @param {number} points P

@@ -60,7 +60,8 @@ def find_couplings(
     if known:
         return found
     lawful = {c for own in found if own.kind is not CouplingKind.POLYNOMIAL for c in own.targets}
-    usual = np.median(np.abs(sample), axis=0)
+    with np.errstate(over="ignore"):
+        usual = np.median(np.abs(sample), axis=0)
     steps = np.array([_step(*line, float(usual[c])) for c, line in enumerate(lines)])
     free = [column for column in predicted if column not in lawful]
     return found + find_joints(values, columns, steps, free)

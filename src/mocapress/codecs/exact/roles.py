@@ -148,6 +148,7 @@ def _exponents(values: NDArray[np.float64], roles: Sequence[Role]) -> Iterator[i
         if role is not Role.PREDICTED or len(found) == 0:
             yield 0
             continue
-        usual = np.frexp(np.median(found))[1]
+        with np.errstate(over="ignore"):
+            usual = np.frexp(np.median(found))[1]
         exponent = EXPONENT_STEP * round((_USUAL_MOVE - int(usual)) / EXPONENT_STEP)
         yield max(-MOST_EXPONENT, min(MOST_EXPONENT, exponent))

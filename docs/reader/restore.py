@@ -1,0 +1,84 @@
+"""Restore the original of a ``.mcz`` file.
+
+    python docs/reader/restore.py FILE.mcz [-o OUT] [--model MODEL.mcm]
+
+Written from the specification, for a second opinion: nothing of mocapress is used, and it is slow.
+Of a file without an original, what comes out are the numbers of all streams, one stream behind the
+other and row by row, as little-endian doubles.
+"""
+
+import argparse
+import hashlib
+import importlib
+import sys
+import zlib
+from pathlib import Path
+
+from container import Stream, packed, read_file, read_model
+from layout import Layout
+from records import CorruptError
+
+CODECS = ("app", "diffma", "exact")
+LOSSY = ("diffma",)
+
+
+def restored(data: bytes, model: bytes | None = None) -> bytes:
+    """Give the original of a file, of which ``model`` is the ``.mcm`` that it may name."""
+    file = read_file(data)
+    if file.format is None:
+        numbers = [row for stream in file.streams for row in decoded(stream, model)]
+        return b"".join(map(packed, numbers))
+    if file.format == "":
+        original = file.layout
+    else:
+        rows = decoded(file.streams[0], model)
+        original = Layout(file, len(rows)).printed(rows)
+    codecs = [stream.codec for stream in file.streams]
+    if hashlib.sha256(original).digest() != file.digest and not set(codecs) & set(LOSSY):
+        raise CorruptError("what was restored is not the original")
+    return original
+
+
+def decoded(stream: Stream, model: bytes | None) -> list[list[float]]:
+    """Give the rows of a stream."""
+    if stream.codec not in CODECS:
+        raise CorruptError(f"coded by {stream.codec}, which this reader does not know")
+    more = {}
+    if stream.model:
+        if model is None:
+            raise CorruptError("decoding needs the model that the file names")
+        more["model"] = read_model(model, stream.model)
+    formats = [(told[0], told[1]) if told else (4, 0) for told in stream.formats]
+    decode = importlib.import_module(stream.codec).decode
+    rows: list[list[float]] = []
+    for chunk in stream.chunks:
+        header = stream.header if chunk.header is None else chunk.header
+        told = [(chunk.frames, chunk.payload)]
+        own = decode(header, stream.parameters, told, formats, **more)
+        if zlib.crc32(b"".join(map(packed, own))) != chunk.digest:
+            raise CorruptError("a chunk decodes to other numbers than were coded")
+        rows += own
+    return rows
+
+
+def main() -> None:
+    """Restore a file."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("file", type=Path)
+    parser.add_argument("-o", dest="output", type=Path, help="otherwise standard output")
+    parser.add_argument("--model", type=Path, help="the .mcm that the file names")
+    arguments = parser.parse_args()
+    try:
+        model = arguments.model.read_bytes() if arguments.model else None
+        original = restored(arguments.file.read_bytes(), model)
+    except (CorruptError, ValueError, LookupError, OverflowError) as error:
+        sys.exit(f"{arguments.file}: {error}")
+    if arguments.output:
+        with arguments.output.open("xb") as target:
+            target.write(original)
+    else:
+        sys.stdout.buffer.write(original)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,126 @@
+"""The second reader, docs/reader, decodes what mocapress codes, bit for bit.
+
+It was written from the specification, so where both differ one of them or the specification is
+wrong.
+"""
+
+import hashlib
+import re
+import struct
+import sys
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import mocapress as mp
+from mocapress.formats.number_formats import printed
+from mocapress.motion import Clip, Column
+from mocapress.motion.number_format import NumberFormat, NumberKind
+
+ROOT = Path(__file__).parents[2]
+sys.path += [str(ROOT / "docs/reader"), str(ROOT / "tests/golden")]
+import clips  # noqa: E402
+import printing  # noqa: E402
+
+Values = NDArray[np.float64]
+
+# Clips, and how they are coded; with a model, one that was learned from the clip itself.
+CASES = [
+    ("couplings.bvh", "app:chunk=30"),
+    ("numbers.bvh", "app:t=4,table=k4-non-uniform,mantissa_limit=53,chunk=16"),
+    ("couplings.bvh", "diffma:bits=8,chunk=30,max_error=0.01,per=channel,order=auto"),
+    ("numbers.bvh", "diffma:order=2,chunk=16,window=3"),
+    ("skeleton.amc", "exact:level=1,chunk=13"),
+    ("numbers.bvh", "exact:level=1"),
+    ("numbers.bvh", "exact:level=2,chunk=16"),
+    ("couplings.bvh", "exact:level=3,chunk=32"),
+    ("leaps.amc", "exact:level=6,chunk=22"),
+    ("numbers.bvh", "exact:chunk=16"),
+    ("wide.amc", "exact:chunk=2"),
+    ("couplings.bvh", "exact:level=7"),
+    ("skeleton.amc", "exact:level=8,chunk=12"),
+    ("leaps.amc", "exact:level=9,chunk=30"),
+    ("couplings.bvh", "exact:level=3,chunk=32 with a model"),
+    ("leaps.amc", "exact:level=9,chunk=30 with a model"),
+]
+
+
+def decoded_by_reader(
+    clip: Clip, spec: str, header: bytes, chunks: list[tuple[int, bytes]], model: bytes | None
+) -> bytes:
+    """Give the values row by row."""
+    name, _, told = spec.partition(":")
+    parameters = dict(pair.split("=") for pair in told.split(","))
+    formats = [
+        (int(column.decimal.kind), column.decimal.digits) if column.decimal else (4, 0)
+        for column in clip.columns
+    ]
+    more = {"model": model} if model else {}
+    rows = import_module(name).decode(header, parameters, chunks, formats, **more)
+    return b"".join(struct.pack(f"<{len(row)}d", *row) for row in rows)
+
+
+def assert_same(clip: Clip, told: str) -> None:
+    spec, with_model, _ = told.partition(" with a model")
+    codec = mp.codec(spec)
+    stream = clip.streams["motion"]
+    model = mp.train([clip], spec) if with_model else None
+    encoded = codec.encode(stream, skeleton=clip.skeleton, model=model)
+    chunks = [(chunk.frames, chunk.payload) for chunk in encoded.chunks]
+    payload = model.payload if model else None
+    found = decoded_by_reader(clip, spec, encoded.header, chunks, payload)
+    own = codec.decode(encoded.header, encoded.chunks, clip.columns, model=model)
+    assert found == own.tobytes()
+
+
+@pytest.mark.parametrize(("name", "told"), CASES)
+def test_every_codec_decodes_to_the_same_bits(tmp_path: Path, name: str, told: str) -> None:
+    path = tmp_path / name
+    path.write_bytes(getattr(clips, path.stem)())
+    assert_same(mp.read(path), told)
+
+
+def test_couplings_of_a_part_of_many_columns_decode_to_the_same_bits(tmp_path: Path) -> None:
+    path = tmp_path / "couplings.bvh"
+    path.write_bytes(clips.couplings(50))
+    joints = mp.read(path)
+    more = np.round(np.cumsum(np.random.default_rng(1).normal(size=(50, 1030)), axis=0), 1)
+    values = np.hstack([joints.values, more])
+    others = tuple(Column(f"v{i}", -1, f"v{i}") for i in range(1030))
+    clip = Clip.of(values[:30], (*joints.columns, *others))
+    assert_same(clip, "exact:level=3")
+
+
+@pytest.mark.parametrize("kind", range(6))
+@pytest.mark.parametrize("flags", range(8))
+def test_numbers_are_printed_alike(kind: int, flags: int) -> None:
+    random = np.random.default_rng(kind)
+    numbers = random.normal(size=400) * 10.0 ** random.integers(-30, 30, 400)
+    usual = np.round(random.normal(size=200) * 50, 3)
+    odd = [0.0, -0.0, 1.0, -1.0, 0.5, 100.0, 1e-5, 9.9995, np.nan, np.inf, -np.inf, 1e300, 5e-324]
+    values = np.array([*numbers, *usual, *odd, 1e22, 1e16, 123456.5, 0.00012345])
+    for digits in (1, 4, 6, 15, 17):
+        told = bytes([kind, digits, 2 + digits % 3, flags])
+        own = NumberFormat(
+            NumberKind(kind), digits, 2 + digits % 3, flags & 1 > 0, flags & 2 > 0, flags & 4 > 0
+        )
+        assert [printing.printed(float(x), told).encode() for x in values] == printed(values, own)
+
+
+def test_float32_is_printed_alike() -> None:
+    random = np.random.default_rng(0)
+    bits = np.concatenate([random.integers(1, 0x7F800000, 3000), np.arange(1, 255) << 23])
+    values = bits.astype("<u4").view("<f4").astype(np.float64)
+    told = [printing.printed(float(x), bytes([5, 0, 2, 0])).encode() for x in values]
+    assert told == printed(values, NumberFormat(NumberKind.SHORTEST32))
+
+
+def test_the_specification_names_the_constants_that_there_are() -> None:
+    text = (ROOT / "docs/format/exact.md").read_text()
+    told = dict(re.findall(r"\| `(\w+\.txt)` \| `([0-9a-f]{64})` \|", text))
+    folder = ROOT / "core/exact/data"
+    found = {p.name: hashlib.sha256(p.read_bytes()).hexdigest() for p in folder.iterdir()}
+    assert told == found
