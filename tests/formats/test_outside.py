@@ -4,6 +4,7 @@ import json
 import shutil
 import sys
 from collections.abc import Iterator
+from math import sin
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,9 @@ import mocapress as mp
 from mocapress import formats
 from mocapress.cli.app import app
 
-TABLE = b"TABLE 50\n" + b"".join(b"%d.%d\n" % (i * i % 90, i % 7 + 1) for i in range(600))
+TABLE = b"TABLE 50\n" + b"".join(
+    b"%.4f\n" % (3 * sin(i / 9) + sin(i * i / 7000)) for i in range(1500)
+)
 
 
 @pytest.fixture(autouse=True)
@@ -24,7 +27,7 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]
     place = tmp_path / "site"
     about = place / "tables_for_mocapress-1.0.dist-info"
     about.mkdir(parents=True)
-    shutil.copy(Path(__file__).with_name("tables.py"), place / "tables_for_mocapress.py")
+    shutil.copy(Path(__file__).with_name("table_format.py"), place / "tables_for_mocapress.py")
     (about / "METADATA").write_text("Metadata-Version: 2.1\nName: tables-for-mocapress\n")
     (about / "entry_points.txt").write_text(
         "[mocapress.formats]\ntable = tables_for_mocapress:FORMAT\n"
@@ -52,7 +55,7 @@ def row(*words: object) -> dict[str, Any]:
 
 def test_reading_writing_and_loading() -> None:
     clip = mp.read("heights.tbl")
-    assert (clip.frames, clip.channels, clip.frame_time) == (600, 1, clip.frame_time)
+    assert (clip.frames, clip.channels, clip.frame_time) == (1500, 1, clip.frame_time)
     assert mp.read(TABLE).values.tobytes() == clip.values.tobytes()  # known by its contents
     assert mp.read(b"TABLE 50\n1.5\n").values.tolist() == [[1.5]]
     mp.write(clip, "again.tbl")
@@ -88,15 +91,15 @@ def test_diffma_json() -> None:
     assert row("verify", "heights.diffma.json")["ok"]
     mocapress("decompress", "heights.diffma.json", "-o", "back.tbl")
     assert Path("back.tbl").read_bytes().startswith(b"TABLE 50\n")
-    assert mp.load("heights.diffma.json").frames == 600
+    assert mp.load("heights.diffma.json").frames == 1500
 
 
 def test_info() -> None:
     facts = row("info", "heights.tbl")
-    assert (facts["format"], facts["frames"], facts["joints"]) == ("table", 600, 1)
+    assert (facts["format"], facts["frames"], facts["joints"]) == ("table", 1500, 1)
     mocapress("compress", "heights.tbl")
     packed = row("info", "heights.tbl.mcz")
-    assert (packed["format"], packed["frames"]) == ("table", 600)
+    assert (packed["format"], packed["frames"]) == ("table", 1500)
 
 
 def test_converting_from_and_to(samples: Path) -> None:

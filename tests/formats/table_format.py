@@ -8,6 +8,7 @@ The first line says how many numbers there are in a second.
 """
 
 import re
+from dataclasses import replace
 from fractions import Fraction
 
 from mocapress.errors import FormatError, UnsupportedError
@@ -40,7 +41,9 @@ def fit(clip: Clip) -> Clip:
     if not heights:
         raise UnsupportedError("a table needs a height")
     values = clip.values[:, heights[:1]]
-    return Clip.of(values, skeleton_columns(_POINT), clip.frame_time, _POINT, clip.name)
+    (column,) = skeleton_columns(_POINT)
+    column = replace(column, decimal=clip.columns[heights[0]].decimal)
+    return Clip.of(values, (column,), clip.frame_time, _POINT, clip.name)
 
 
 def write(clip: Clip) -> dict[str, bytes]:
