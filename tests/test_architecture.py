@@ -18,7 +18,6 @@ ROWS = [
     {"source"},
     {"container"},
     {"models"},
-    {"restore"},
     {"api"},
     {"describe", "viewer"},
     {"cli"},
