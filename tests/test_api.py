@@ -20,7 +20,7 @@ BROKEN = {
     "AMC with text for a number": b":DEGREES\n1\nroot 1 2 three 4 5 6\n",
     "AMC with NaN": b":DEGREES\n1\nroot 1 2 nan 4 5 6\n",
     "AMC with a number missing later": b":DEGREES\n1\nroot 1 2\n2\nroot 1\n",
-    "AMC with another bone later": b":DEGREES\n1\nroot 1 2\n2\nhip 1 2\n",
+    "AMC with a bone twice later": b":DEGREES\n1\nroot 1 2\n2\nroot 1 2\nroot 1 2\n",
     "BVH without motion": b"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\n",
     "BVH never closed": b"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\nMOTION\n",
     "BVH of another column count": (

@@ -24,6 +24,15 @@ def test_the_python_example_runs(
     assert capsys.readouterr().out.split("\n")[:-1] == promised
 
 
+def test_the_guide_to_compressed_clips_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copy(ROOT / "samples/freebvh.bvh", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    guide = (ROOT / "docs/guide/mcz.md").read_text()
+    exec("\n".join(re.findall(r"```python\n(.*?)```", guide, re.DOTALL)), {})
+
+
 def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for suffix in ("amc", "asf"):
         shutil.copy(ROOT / f"samples/cmu_01_01.{suffix}", tmp_path / f"walk.{suffix}")

@@ -239,6 +239,9 @@ def test_devices_and_streams_are_written_to(clip: Path) -> None:
         assert full.exit_code == 1
         assert full.stderr == "mocapress: x.bvh: /dev/full: No space left on device\n"
     assert stat.S_ISCHR(Path("/dev/null").stat().st_mode)
+    Path("null").symlink_to("/dev/null")
+    assert mocapress("convert", clip, "--to", "amc", "-o", "null").exit_code == 0
+    assert files() == ["null", "x.bvh"]
     os.mkfifo("fifo")
     with subprocess.Popen([*COMMAND, "compress", "x.bvh", "-o", "fifo", "--force"]) as child:
         assert mp.decompress(Path("fifo").read_bytes()) == clip.read_bytes()

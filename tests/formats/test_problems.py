@@ -186,3 +186,41 @@ def test_a_take_with_unreadable_rows_keeps_its_duration(samples: Path, rows: ran
     if len(rows) < 64:
         assert read.frames == clip.frames
         np.testing.assert_array_equal(read.values[kept], clip.values[kept])
+
+
+HEAD = BVH[: BVH.index(b"1.0 2.0")]
+WRAPPED = {
+    "one number a line": HEAD + BVH[len(HEAD) :].replace(b" ", b"\n"),
+    "two numbers and one": HEAD + re.sub(rb" (\S+\n)", rb"\n\1", BVH[len(HEAD) :]),
+    "blank lines between": HEAD + BVH[len(HEAD) :].replace(b" ", b"\r\n\r\n"),
+}
+
+
+@pytest.mark.parametrize("name", WRAPPED)
+def test_rows_may_all_wrap_alike(name: str) -> None:
+    data = WRAPPED[name]
+    clip, layout, problems = Source(data).split()
+    assert not problems
+    np.testing.assert_array_equal(clip.values, Source(BVH).split().clip.values)
+    assert layout.join(clip.values) == data
+    assert layout.verbatim_bytes() == 0
+    (cut,) = Source(data.rstrip()[:-4]).split().problems
+    assert cut.name == "unreadable-rows"
+
+
+def test_two_short_rows_are_no_wrapped_row() -> None:
+    data = HEAD + b"1 2\n3\n4 5 6\n7 8 9\n"
+    clip, _, problems = Source(data).split()
+    assert [problem.name for problem in problems] == ["unreadable-rows"]
+    assert clip.values[:, 0].tolist() == [4, 4, 4, 7]
+
+
+def test_a_bone_may_be_seen_first_in_a_later_frame() -> None:
+    data = (
+        b":DEGREES\n1\nroot 1 2 3 4 5 6\nhip 7\n2\nroot 1 2 3 4 5 6\nneck 8 9\nhip 7\n3\nneck 1 2\n"
+    )
+    clip, layout, problems = Source(data).split()
+    assert not problems
+    assert [column.name for column in clip.columns[6:]] == ["neck.v1", "neck.v2", "hip.v1"]
+    assert clip.values[:, 6:].tolist() == [[0, 0, 7], [8, 9, 7], [1, 2, 7]]
+    assert layout.join(clip.values) == data

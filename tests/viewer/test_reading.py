@@ -75,7 +75,7 @@ BROKEN = {
     "frame_time.bvh": BVH.replace(b"Frame Time:", b"Frame Tim:"),
     "empty.bvh": b"",
     "empty.amc": b"",
-    "bone.amc": b"1\nroot 1 2 3 4 5 6\nhip 1\n2\nroot 1 2 3 4 5 6\nhop 1\n",
+    "bone.amc": b"1\nroot 1 2 3 4 5 6\nhip 1\n2\nroot 1 2 3 4 5 6\nhip 1\nhip 1\n",
     "few.amc": b"1\nroot 1 2 3 4 5 6\n2\nroot 1 2 3 4 5\n",
     "infinite.amc": b"1\nroot 1 2 3 4 5 6\n2\nroot 1 2 3 4 5 1e999\n",
 }
@@ -99,6 +99,14 @@ def test_an_amc_that_states_its_rate(tmp_path: Path, stated: str) -> None:
     file = tmp_path / "a.amc"
     file.write_text(
         f":DEGREES\n:SAMPLES-PER-SECOND {stated}\n-1\nroot 1 2 3 4 5 6\n0\nroot 1 2 3 4 5 6\n"
+    )
+    check(file)
+
+
+def test_a_bone_first_seen_later(tmp_path: Path) -> None:
+    file = tmp_path / "a.amc"
+    file.write_text(
+        "1\nroot 1 2 3 4 5 6\nhip 7\n2\nroot 1 2 3 4 5 6\nneck 8 9\nhip 7\n3\nneck 1 2\n"
     )
     check(file)
 

@@ -193,7 +193,7 @@ def _of_contents(opened: Opened, asf_path: str | Path | None, *, strict: bool) -
     data = contents(opened, original)
     of = formats.recognise(data, original.name)
     if of is None or of.split is None:
-        known = formats.names(formats.readable())
+        known = formats.listed(formats.readable())
         raise FormatError("no motion in this file", expected=f"{known} inside")
     parts = source.split(asf_path, of, data)
     source.accept(parts.problems, strict=strict)

@@ -56,6 +56,7 @@ def convert(
     from mocapress.container import diffma_json
     from mocapress.formats import by_id, readable, suffixes
     from mocapress.motion.convert import with_rate
+    from mocapress.storage import is_stream
 
     made = _format(to, output)
     refuse_other_kinds(output, made.suffixes, known_endings())
@@ -85,8 +86,8 @@ def convert(
         clip = _read(source, asf, places_for(job, given), strict=not lenient)
         clip = with_rate(clip, fps, needed=made.timed)
         job.outputs |= api.printed(clip, made, job.target)
-        if job.target == STREAM:
-            job.outputs = {STREAM: job.outputs[STREAM]}
+        if job.target == STREAM or is_stream(job.target):  # which has nothing beside it
+            job.outputs = {job.target: job.outputs[job.target]}
         _keep_skeleton(job, source)
         return {
             "output": str(job.target),

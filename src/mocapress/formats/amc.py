@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from mocapress.errors import FormatError
 from mocapress.formats.asf import asf_words, format_asf
 from mocapress.formats.contract import Format, Split, split_of
+from mocapress.formats.joint_names import decoded, words
 from mocapress.formats.layout import Slot, build, print_clip
-from mocapress.formats.names import decoded, words
 from mocapress.formats.problems import Problem
 from mocapress.formats.rows import (
     Body,
+    Reading,
     RowShape,
     bytes_after_end,
     is_padding,
@@ -31,6 +32,7 @@ from mocapress.motion.convert import to_amc_clip
 # A line that holds a frame's number and nothing else.
 _COUNTER = re.compile(rb"^[ \t]*-?\d+[ \t]*\r?$", re.MULTILINE)
 _RATE = re.compile(rb"^[ \t]*:samples-per-second[ \t]+(\S+)", re.MULTILINE | re.IGNORECASE)
+_MOST_LATER_BONES = 256
 _TOKEN = re.compile(rb"\S+")
 _KEYWORD = re.compile(rb"^\s*:(fully-specified|degrees|radians)\b", re.MULTILINE | re.IGNORECASE)
 
@@ -85,13 +87,11 @@ def read_body(data: bytes, file: str | None = None) -> tuple[Body, RowShape, lis
     if first is None:
         raise FormatError("no frame", file=file, expected="a line with a frame's number")
     shape = _row_shape(data, first.start(), file)
-    reading = read_all(
-        data,
-        first.start(),
-        shape,
-        lambda at: _next_counter(data, at),
-        lambda at, before: _partial_rows(data, at, shape, before) if before else None,
-    )
+    reading = _read_all(data, first.start(), shape)
+    stop = reading.stops[0] if reading.stops else reading.end
+    if stop is not None and _is_other_bone(data, stop, shape):
+        shape = _with_later_bones(data, first.start(), shape)
+        reading = _read_all(data, first.start(), shape)
     cut = reading.end is not None and not is_padding(data[int(reading.end.offsets[-1]) :])
     problems = []
     if reading.stops or cut:
@@ -101,6 +101,38 @@ def read_body(data: bytes, file: str | None = None) -> tuple[Body, RowShape, lis
     if reading.end is not None and not cut:
         problems.append(bytes_after_end(data, reading.body))
     return reading.body, shape, problems
+
+
+def _read_all(data: bytes, begin: int, shape: RowShape) -> Reading:
+    return read_all(
+        data,
+        begin,
+        shape,
+        lambda at: _next_counter(data, at),
+        lambda at, before: _partial_rows(data, at, shape, before),
+    )
+
+
+def _is_other_bone(data: bytes, stop: Body, shape: RowShape) -> bool:
+    word = _TOKEN.match(data, min(stop.error_offset, len(data)))
+    return word is not None and stop.stop != "number" and word.group() not in shape.words
+
+
+def _with_later_bones(data: bytes, begin: int, shape: RowShape) -> RowShape:
+    """Give the shape with all bones that any frame has, each behind the one it follows there."""
+    bones = list(zip(shape.words, shape.counts, strict=True))
+    known, place = set(shape.words), 0
+    for line in re.compile(rb"[^\n]+").finditer(data, begin):
+        words = line.group().split()
+        if len(words) < 2 or words[0].startswith((b"#", b"\0", b"\x1a")):
+            place = 0 if words else place
+        elif words[0] in known:
+            place = next((i for i, bone in enumerate(bones) if bone[0] == words[0]), place) + 1
+        elif len(known) < len(shape.words) + _MOST_LATER_BONES:
+            bones.insert(place, (words[0], len(words) - 1))
+            known.add(words[0])
+            place += 1
+    return RowShape(True, tuple(word for word, _ in bones), tuple(count for _, count in bones))
 
 
 def _next_counter(data: bytes, begin: int) -> int:
@@ -202,7 +234,7 @@ def _row_shape(data: bytes, begin: int, file: str | None) -> RowShape:
     return RowShape(True, words, counts)
 
 
-def _partial_rows(data: bytes, begin: int, shape: RowShape, before: Body) -> Body | None:
+def _partial_rows(data: bytes, begin: int, shape: RowShape, before: Body | None) -> Body | None:
     """Read rows that leave out bones or have them in another order, where it is that."""
     lines = _lines(_row_text(data, begin))[1:]
     words = tuple(tokens[0].group() for tokens in lines)
@@ -217,7 +249,9 @@ def _partial_rows(data: bytes, begin: int, shape: RowShape, before: Body) -> Bod
     columns = np.concatenate(
         [np.arange(first[word], first[word] + counts[word]) for word in words] or [np.arange(0)]
     )
-    values = np.tile(before.values[-1], (len(part.values), 1))
+    # A bone that was never seen before stands at 0.
+    held = before.values[-1] if before else np.zeros(shape.columns)
+    values = np.tile(held, (len(part.values), 1))
     values[:, columns] = part.values
     statistics = np.zeros((shape.columns, 8), np.uint8)
     statistics[:, 0] = 255

@@ -10,7 +10,7 @@ import numpy as np
 
 from mocapress.errors import FormatError
 from mocapress.formats.contract import Format
-from mocapress.formats.names import decoded, escaped, words
+from mocapress.formats.joint_names import decoded, escaped, words
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 
 _CHANNELS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")

@@ -1,6 +1,8 @@
 """BVH: a skeleton and its motion in one file, one line per frame."""
 
 import re
+from functools import partial
+from itertools import islice
 
 from mocapress.errors import FormatError, UnsupportedError
 from mocapress.formats.bvh_hierarchy import Hierarchy, format_hierarchy, parse_hierarchy
@@ -29,10 +31,12 @@ _TOKEN = re.compile(rb"\S+")
 
 def split(data: bytes, _skeleton: Skeleton | None = None, file: str | None = None) -> Split:
     """Take a BVH apart; it has its skeleton in itself."""
-    body, hierarchy, problems = read_body(data, file)
+    body, hierarchy, lines, problems = read_body(data, file)
     columns = skeleton_columns(hierarchy.skeleton)
     clip = Clip.of(body.values, columns, hierarchy.frame_time, hierarchy.skeleton)
-    return split_of(clip, build("bvh", data, body, slots_of_row), problems, file)
+    return split_of(
+        clip, build("bvh", data, body, partial(slots_of_row, lines=lines)), problems, file
+    )
 
 
 def write(clip: Clip) -> dict[str, bytes]:
@@ -46,8 +50,8 @@ def write(clip: Clip) -> dict[str, bytes]:
     return {".bvh": print_clip(clip, header, literals, counter=False)}
 
 
-def read_body(data: bytes, file: str | None = None) -> tuple[Body, Hierarchy, list[Problem]]:
-    """Read the frames, however many there are.
+def read_body(data: bytes, file: str | None = None) -> tuple[Body, Hierarchy, int, list[Problem]]:
+    """Read the frames, however many there are, and say how many lines each takes.
 
     Raises
     ------
@@ -59,10 +63,32 @@ def read_body(data: bytes, file: str | None = None) -> tuple[Body, Hierarchy, li
     channels = sum(len(joint.channels) for joint in hierarchy.skeleton.joints)
     if channels == 0:
         raise FormatError("no channels", file=file, expected="a joint with CHANNELS")
-    shape = RowShape(False, (b"",), (channels,))
+    shape = _row_shape(data, hierarchy, channels)
     reading = read_all(data, hierarchy.rows_begin, shape, lambda at: _next_line(data, at))
     body = reading.body or read_rows(data, hierarchy.rows_begin, shape, 0)
-    return body, hierarchy, _problems(data, reading, body, hierarchy.frames, channels)
+    lines = len(shape.counts)
+    expected = f"{channels} numbers on {'a line' if lines == 1 else f'{lines} lines'}"
+    return body, hierarchy, lines, _problems(data, reading, body, hierarchy.frames, expected)
+
+
+def _row_shape(data: bytes, hierarchy: Hierarchy, channels: int) -> RowShape:
+    """Say how many numbers stand on a line: all of a frame, unless all frames wrap alike."""
+    one = RowShape(False, (b"",), (channels,))
+    begin = hierarchy.rows_begin
+    if len(read_rows(data, begin, one, 1).values):
+        return one
+    counts: list[int] = []
+    for line in re.compile(rb"[^\n]+").finditer(data, begin):
+        words = line.group().split()
+        if words and not words[0].startswith(b"#"):
+            counts.append(len(words))
+        if sum(counts) >= channels:
+            break
+    if sum(counts) != channels or len(counts) < 2:
+        return one
+    wrapped = RowShape(False, (b"",) * len(counts), tuple(counts))
+    needed = min(max(hierarchy.frames, 1), 2)
+    return wrapped if len(read_rows(data, begin, wrapped, needed).values) == needed else one
 
 
 def _next_line(data: bytes, begin: int) -> int:
@@ -71,7 +97,7 @@ def _next_line(data: bytes, begin: int) -> int:
 
 
 def _problems(
-    data: bytes, reading: Reading, body: Body, declared: int, channels: int
+    data: bytes, reading: Reading, body: Body, declared: int, expected_row: str
 ) -> list[Problem]:
     found, rest = len(body.values), after_rows(data, body)
     problems = []
@@ -79,8 +105,7 @@ def _problems(
     more = found > declared and rest[:1] in b"+-.0123456789"
     cut = bool(rest) and not is_padding(rest) and (found < declared or more)
     if reading.stops or cut:
-        expected = f"{channels} numbers on a line"
-        problems.append(unreadable(data, reading, lambda _: expected, cut=cut))
+        problems.append(unreadable(data, reading, lambda _: expected_row, cut=cut))
     if found + cut < declared:
         expected = f"{declared} frames, as declared"
         problems.append(
@@ -96,10 +121,13 @@ def _problems(
     return problems
 
 
-def slots_of_row(text: bytes) -> list[Slot]:
-    """Find the numbers in a row's bytes."""
-    line = text.split(b"\n", 1)[0] if text.lstrip()[:1] != b"#" else text
-    return [(column, *token.span()) for column, token in enumerate(_TOKEN.finditer(line))]
+def slots_of_row(text: bytes, lines: int = 1) -> list[Slot]:
+    """Find the numbers in the bytes of a row of so many lines."""
+    end = len(text)
+    if text.lstrip()[:1] != b"#":
+        ends = [found.start() for found in islice(re.finditer(rb"\n", text), lines)]
+        end = ends[-1] if len(ends) == lines else end
+    return [(column, *token.span()) for column, token in enumerate(_TOKEN.finditer(text, 0, end))]
 
 
 FORMAT = Format(

@@ -7,7 +7,7 @@ from math import isfinite
 from typing import NoReturn
 
 from mocapress.errors import FormatError
-from mocapress.formats.names import decoded, escaped
+from mocapress.formats.joint_names import decoded, escaped
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 
 _KINDS = {

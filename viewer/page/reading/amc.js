@@ -7,6 +7,7 @@ import { channelNames } from "./skeleton.js";
 
 // What programs leave behind a text: NULs, or the Ctrl-Z of DOS.
 const PADDING = /^[\0\x1a]/;
+const MOST_LATER_BONES = 256;
 const ROOT_CHANNELS = ["tx", "ty", "tz", "rx", "ry", "rz"];
 
 /**
@@ -21,8 +22,17 @@ export function parseAmc(bytes, skeleton) {
   const text = latin1(bytes);
   const counter = /^[ \t]*-?\d+[ \t]*\r?$/m.exec(text);
   if (!counter) throw new FileError("no frame", { expected: "a line with a frame's number" });
-  const bones = firstFrame(text, counter.index);
-  const { rows, notes } = readFrames(new Scanner(bytes, counter.index), bones);
+  let bones = firstFrame(text, counter.index);
+  let read;
+  try {
+    read = readFrames(new Scanner(bytes, counter.index), bones);
+  } catch (error) {
+    const all = withLaterBones(text, counter.index, bones);
+    if (all.length === bones.length) throw error;
+    bones = all;
+    read = readFrames(new Scanner(bytes, counter.index), bones);
+  }
+  const { rows, notes } = read;
   const header = text.slice(0, counter.index);
   const unit = /^\s*:(radians|degrees)/im.exec(header)?.[1].toLowerCase();
   const rate = Number(/^[ \t]*:samples-per-second[ \t]+(\S+)/im.exec(header)?.[1]);
@@ -56,6 +66,28 @@ function firstFrame(text, begin) {
     throw new FileError("the first frame cannot be read", { line, expected });
   }
   return bones;
+}
+
+/** All bones that any frame has, each behind the one that it follows there. */
+function withLaterBones(text, begin, bones) {
+  const all = [...bones];
+  const known = new Set(bones.map((bone) => bone.name));
+  let place = 0;
+  for (const raw of linesFrom(text, begin)) {
+    const [name, ...values] = wordsOf(raw);
+    if (!name) continue;
+    if (!values.length || /^[#\0\x1a]/.test(name)) place = 0;
+    else if (known.has(name)) place = all.findIndex((bone) => bone.name === name) + 1;
+    else if (known.size < bones.length + MOST_LATER_BONES) {
+      all.splice(place++, 0, { name, count: values.length });
+      known.add(name);
+    }
+  }
+  let first = 0;
+  return all.map(({ name, count }) => {
+    first += count;
+    return { name, count, first: first - count };
+  });
 }
 
 function* linesFrom(text, begin) {
