@@ -1,12 +1,16 @@
 """The Python interface as a user has it: read, write, compress, decompress, load."""
 
+import os
+from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import mocapress as mp
-from mocapress.api import compress_source
+from mocapress.api import Opened, compress_source
+from mocapress.container import MczWriter
 from mocapress.source import Source
 
 BROKEN = {
@@ -163,3 +167,126 @@ def test_writing_and_reading_keeps_numbers_as_they_were(samples: Path, tmp_path:
     assert again.values.tobytes() == clip.values.tobytes()
     assert [c.name for c in again.columns] == [c.name for c in clip.columns]
     np.testing.assert_allclose(mp.positions(again)[::100], mp.positions(clip)[::100], atol=1e-6)
+
+
+def test_a_clip_of_several_streams_comes_back(samples: Path) -> None:
+    motion = mp.read(samples / "freebvh.bvh")
+    force = mp.Stream(
+        np.arange(621.0).reshape(207, 3) / 8,
+        tuple(mp.Column(f"plate.{axis}", 0, axis, "N") for axis in ("fx", "fy", "fz")),
+        Fraction(1, 90),
+    )
+    clip = replace(
+        motion,
+        streams={**motion.streams, "force": force, "none": mp.Stream(np.empty((0, 0)), ())},
+        metadata={"actor": "nobody"},
+        name="take 3",
+    )
+    blob = mp.compress(clip, notes={"license": "CC0"})
+    back = mp.load(blob)
+    assert list(back.streams) == ["motion", "force", "none"]
+    for name, stream in clip.streams.items():
+        assert back.streams[name].values.tobytes() == stream.values.tobytes()
+        assert back.streams[name].columns == stream.columns
+        assert back.streams[name].frame_time == stream.frame_time
+    assert (back.skeleton, back.name) == (clip.skeleton, "take 3")
+    assert back.metadata == {"actor": "nobody", "license": "CC0"}
+    part = mp.load(blob, slice(100, 150), stream="force")
+    assert list(part.streams) == ["force"]
+    assert part.values.tobytes() == force.values[100:150].tobytes()
+    assert mp.load(blob, slice(3, 5)).values.tobytes() == motion.values[3:5].tobytes()
+    with pytest.raises(mp.ParameterError, match="expected motion, force, none"):
+        mp.load(blob, stream="face")
+    assert not mp.verify(blob).damage
+
+
+def test_a_lossy_clip_of_streams_keeps_its_bound(samples: Path) -> None:
+    clip = mp.read(samples / "mocapbank.bvh")
+    loaded = mp.load(mp.compress(clip, "diffma:max_error=0.05"))
+    assert 0 < np.abs(loaded.values - clip.values).max() <= 0.05
+
+
+@pytest.mark.parametrize("cut", [0.6, 0.97])
+def test_what_was_missing_before_is_reported_after(
+    samples: Path, tmp_path: Path, cut: float
+) -> None:
+    """A compressed file says of the original what reading the original says."""
+    data = (samples / "mocapbank.bvh").read_bytes()
+    file = tmp_path / "cut.bvh"
+    file.write_bytes(data[: int(cut * len(data))])
+    packed = mp.compress(file)
+    assert mp.decompress(packed) == file.read_bytes()
+    with pytest.raises(mp.FormatError) as read:
+        mp.read(file)
+    with pytest.raises(mp.FormatError) as loaded:
+        mp.load(packed)
+    facts = [(e.value.what, e.value.line, e.value.expected, e.value.found) for e in (read, loaded)]
+    assert facts[0] == facts[1]
+    with pytest.warns(mp.MotionWarning) as of_reading:
+        clip = mp.read(file, strict=False)
+    with pytest.warns(mp.MotionWarning) as of_loading:
+        again = mp.load(packed, strict=False)
+    assert again.values.tobytes() == clip.values.tobytes()
+    names = [
+        [w.message.name for w in caught if isinstance(w.message, mp.MotionWarning)]
+        for caught in (of_reading, of_loading)
+    ]
+    assert names[0] == names[1]
+
+
+def test_decoding_needs_no_parser(samples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever a later reader of BVH refuses, old files open."""
+    from mocapress.formats import bvh, bvh_hierarchy
+
+    data = (samples / "freebvh.bvh").read_bytes()
+    blob, clip = mp.compress(data), mp.read(samples / "freebvh.bvh")
+
+    def refuse(*_: object, **__: object) -> None:
+        raise AssertionError("text was parsed")
+
+    monkeypatch.setattr(bvh_hierarchy, "parse_hierarchy", refuse)
+    monkeypatch.setattr(bvh, "parse_hierarchy", refuse)
+    monkeypatch.setattr(bvh, "read_body", refuse)
+    loaded = mp.load(blob)
+    assert (loaded.columns, loaded.skeleton) == (clip.columns, clip.skeleton)
+    assert mp.decompress(blob) == data
+
+
+def test_a_file_that_shrinks_while_it_is_read_is_an_error(samples: Path, tmp_path: Path) -> None:
+    packed = tmp_path / "walk.mcz"
+    packed.write_bytes(mp.compress(samples / "cmu_01_01.amc", "app"))
+    opened = Opened(Source(packed))
+    os.truncate(packed, packed.stat().st_size // 2)
+    with pytest.raises(mp.CorruptError, match="became shorter"):
+        opened.rows()
+
+
+def test_numbers_that_do_not_fit_the_announced_text_are_refused(samples: Path) -> None:
+    """What a lossy file may restore is bounded by what it announces."""
+    blob = mp.compress((samples / "mocapbank.bvh").read_bytes(), "diffma")
+    opened = Opened(Source(blob))
+    assert opened.mcz.head is not None
+    assert opened.mcz.original is not None
+    parts: list[bytes] = []
+    writer = MczWriter(parts.append)
+    writer.head(opened.mcz.head)
+    writer.original(replace(opened.mcz.original, size=10))
+    for entry in opened.mcz.entries:
+        writer.chunk(opened.mcz.read_chunk(entry))
+    writer.end()
+    assert len(mp.decompress(b"".join(parts))) <= 10 + 32 * opened.rows().values.size + 2**16
+    values = opened.rows().values.copy()
+    values[:] = 1e300
+    huge = mp.compress(mp.load(blob).with_values(values), "exact")
+    other = Opened(Source(huge))
+    parts = []
+    writer = MczWriter(parts.append)
+    assert other.mcz.head is not None
+    columns = opened.streams[0].columns
+    writer.head(replace(other.mcz.head, streams=(replace(other.streams[0], columns=columns),)))
+    writer.original(opened.mcz.original)
+    for entry in other.mcz.entries:
+        writer.chunk(other.mcz.read_chunk(entry))
+    writer.end()
+    with pytest.raises(mp.CorruptError, match="longer"):
+        mp.decompress(b"".join(parts))

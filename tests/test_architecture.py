@@ -1,6 +1,7 @@
 """Imports point downwards only, and importing mocapress stays light."""
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -84,3 +85,39 @@ def test_commands_load_no_extras(tmp_path: Path) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+# Sentences for people, and the names of options; nothing there decides by the kind of a file.
+NAMES_FORMATS = {
+    "cli/app.py",
+    "cli/compress.py",
+    "cli/convert.py",
+    "cli/options.py",
+    "codecs/diffma/json_types.py",
+    "container/diffma_json.py",
+    "motion/convert.py",
+    "motion/kinematics.py",
+}
+
+
+def test_only_formats_name_formats() -> None:
+    found = []
+    for path in sorted(PACKAGE.rglob("*.py")):
+        name = str(path.relative_to(PACKAGE))
+        tree = ast.parse(path.read_text())
+        nodes = list(ast.walk(tree))
+        docs = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
+        texts = [
+            node.value
+            for node in nodes
+            if isinstance(node, ast.Constant) and isinstance(node.value, str)
+            if id(node) not in docs and re.search(r"\b(amc|asf|bvh)\b", node.value, re.IGNORECASE)
+        ]
+        if name.startswith("formats/"):
+            continue
+        found += [
+            f"{name}: {text!r}"
+            for text in texts
+            if name not in NAMES_FORMATS or not ("-" in text or " " in text)
+        ]
+    assert not found

@@ -1,5 +1,6 @@
 """Whatever a user names is read alike: a path, bytes, a stream; whole or in ranges."""
 
+import gc
 import io
 import os
 import threading
@@ -109,12 +110,13 @@ def test_a_file_that_is_replaced_meanwhile_is_read_as_it_was(tmp_path: Path) -> 
 def test_no_file_stays_open(tmp_path: Path) -> None:
     file = tmp_path / "walk.bvh"
     file.write_bytes((GOLDEN / "v1_walk.bvh").read_bytes())
+    gc.collect()
     before = len(list(Path("/proc/self/fd").iterdir()))
     for _ in range(3):
         mp.compress(file)
         with pytest.raises(mp.MocapressError):
             mp.load(file)
-    assert len(list(Path("/proc/self/fd").iterdir())) == before
+    assert len(list(Path("/proc/self/fd").iterdir())) <= before
 
 
 @pytest.mark.parametrize(

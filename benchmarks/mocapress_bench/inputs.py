@@ -7,7 +7,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from mocapress.formats import names, readable, suffixes
+from mocapress.formats import listed, readable, suffixes
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 
@@ -37,7 +37,7 @@ def clips_named(corpus: Path | None) -> tuple[list[Path], Path]:
         usage("name a folder of clips")
     paths = clips_in(folder) if folder.is_dir() else [folder]
     if not paths:
-        usage(f"no {names(readable())} files in {folder}")
+        usage(f"no {listed(readable())} files in {folder}")
     return paths, folder if folder.is_dir() else folder.parent
 
 

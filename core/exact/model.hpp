@@ -93,7 +93,8 @@ class Model {
     }
     gather_blends(clip.level >= 8 ? Blends::kMostMemories : 1);
     for (auto& expert : experts_) chains_.push_back(&expert.chain());
-    predictions_.resize(experts_.size() + Lawful::kPredictions + 1);
+    // Those of the experts, of the own chains, of a law, and the blend.
+    predictions_.resize(experts_.size() + 1 + Lawful::kPredictions + 1);
     begin_with(clip.start);
   }
 

@@ -7,19 +7,26 @@ that it prints, and takes as `-seed=N`. `one_input` is what atheris takes.
 
 import random
 import sys
-import zlib
+import warnings
 from pathlib import Path
 
 import mocapress as mp
+from mocapress.container.sections import section
 from mocapress.errors import MocapressError
-from mocapress.records import Reader, Writer
+from mocapress.records import Reader
 
 GOLDEN = Path(__file__).parents[2] / "tests/golden"
 
 
 def one_input(data: bytes) -> None:
-    """Restore, load some frames, and read as a model."""
-    for work in (mp.decompress, lambda blob: mp.load(blob, frames=slice(3, 9)), mp.load_model):
+    """Restore, load some frames, salvage, and read as a model."""
+    for work in (
+        mp.decompress,
+        lambda blob: mp.load(blob, frames=slice(3, 9)),
+        lambda blob: mp.load(blob, errors="skip", strict=False),
+        lambda blob: mp.decompress(blob, salvage=True),
+        mp.load_model,
+    ):
         try:
             work(data)
         except MocapressError:
@@ -31,18 +38,13 @@ def forged(data: bytes) -> bytes:
     reader = Reader(data, "file")
     made = bytearray(reader.raw(min(5, len(data))))
     try:
-        while reader.position < len(data):
-            number, content = reader.raw(1), reader.bytes()
-            section = Writer()
-            section.data += number
-            section.bytes(content)
-            made += section.data + zlib.crc32(section.data).to_bytes(4, "little")
+        while reader.left:
+            tag, content = reader.raw(1)[0], reader.bytes()
             reader.raw(4)
-            if number == b"\x04":
-                break
+            made += section(tag, content)
     except MocapressError:
-        return data
-    return bytes(made) + data[reader.position :]
+        pass
+    return bytes(made)
 
 
 def mutated(data: bytes, chance: random.Random) -> bytes:
@@ -65,6 +67,7 @@ def mutated(data: bytes, chance: random.Random) -> bytes:
 def main(runs: int, seed: int) -> None:
     """Run so many mutations."""
     print(f"-runs={runs} -seed={seed}", flush=True)
+    warnings.simplefilter("ignore", mp.MotionWarning)
     chance = random.Random(seed)
     seeds = [path.read_bytes() for path in sorted(GOLDEN.glob("*.mc[zm]"))]
     for run in range(runs):

@@ -170,7 +170,7 @@ class Source:
         """
         of = of or self.format
         if of is None or of.split is None:
-            known = formats.names(formats.readable())
+            known = formats.listed(formats.readable())
             raise FormatError("not a motion file", file=self.name or None, expected=known)
         split, data = of.split, self.data if contents is None else contents
 
@@ -349,7 +349,7 @@ def read(source: Source, asf_path: str | Path | None = None, *, strict: bool = T
         empty = np.empty((0, len(columns)))
         return Clip.of(empty, columns, None, skeleton, Path(source.name).stem)
     if of is None or of.split is None:
-        known = formats.names(tuple(f for f in formats.formats() if f.split or f.read_skeleton))
+        known = formats.listed(tuple(f for f in formats.formats() if f.split or f.read_skeleton))
         raise FormatError("not a motion file", file=file, expected=known)
     parts = source.split(asf_path)
     source.accept(parts.problems, strict=strict)

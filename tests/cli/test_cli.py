@@ -194,6 +194,44 @@ def test_damaged_files_fail_verification(walk: Path) -> None:
     assert not restored.exists()
 
 
+def test_what_is_left_of_a_damaged_file_can_be_salvaged(tmp_path: Path) -> None:
+    walk = tmp_path / "walk.amc"
+    walk.write_bytes(
+        AMC[:27] + b"".join(b"%d\nroot %d.5 2 3 4 5 6\n" % (i, i * i) for i in range(1, 2001))
+    )
+    packed, restored = tmp_path / "walk.amc.mcz", tmp_path / "restored.amc"
+    assert mocapress("compress", walk, "--codec", "exact:chunk=500").exit_code == 0
+    data = bytearray(packed.read_bytes())
+    data[len(data) // 2] ^= 1
+    packed.write_bytes(data)
+    result = mocapress("verify", packed, "--json")
+    assert result.exit_code == 3
+    assert "frames 500 to 999" in result.stdout or "frames 1000 to 1499" in result.stdout
+    assert mocapress("decompress", packed, "-o", restored).exit_code == 1
+    result = mocapress("decompress", packed, "-o", restored, "--salvage")
+    assert result.exit_code == 0
+    assert "is lost" in result.stderr
+    assert restored.read_bytes().count(b"root") == 1500
+
+
+def test_notes_are_kept(walk: Path) -> None:
+    result = mocapress("compress", walk, "--note", "license=CC0", "--note", "source=a=b")
+    assert result.exit_code == 0
+    facts = json.loads(mocapress("info", f"{walk}.mcz", "--json").stdout)[0]
+    assert facts["notes"] == {"license": "CC0", "source": "a=b"}
+    assert facts["name"] == "walk.amc"
+    assert mocapress("compress", walk, "-f", "--note", "license").exit_code == 2
+
+
+def test_an_embedded_skeleton_comes_back(samples: Path, tmp_path: Path) -> None:
+    for suffix in ("amc", "asf"):
+        shutil.copy(samples / f"cmu_01_01.{suffix}", tmp_path / f"walk.{suffix}")
+    assert mocapress("compress", tmp_path / "walk.amc", "--embed-asf", "--level", 1).exit_code == 0
+    packed, back = tmp_path / "walk.amc.mcz", tmp_path / "back.amc"
+    assert mocapress("decompress", packed, "-o", back, "--with-asf").exit_code == 0
+    assert back.with_suffix(".asf").read_bytes() == (samples / "cmu_01_01.asf").read_bytes()
+
+
 def test_what_is_no_motion_is_stored_with_a_warning(tmp_path: Path) -> None:
     file = tmp_path / "broken.bvh"
     file.write_bytes(b"HIERARCHY\nROOT x\n")

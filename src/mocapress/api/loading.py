@@ -189,12 +189,11 @@ def _fitted(opened: Opened, clip: Clip, skeleton: Skeleton | None) -> Clip:
 def _of_contents(opened: Opened, asf_path: str | Path | None, *, strict: bool) -> Clip:
     """Read the motion file that is packed in this one as it is."""
     source, original = opened.source, opened.mcz.original
-    if original is None:
-        raise CorruptError("the head of this file is damaged", file=source.name or None)
+    assert original is not None  # a file has a head or an original
     data = contents(opened, original)
     of = formats.recognise(data, original.name)
     if of is None or of.split is None:
-        known = formats.names(formats.readable())
+        known = formats.listed(formats.readable())
         raise FormatError("no motion in this file", expected=f"{known} inside")
     parts = source.split(asf_path, of, data)
     source.accept(parts.problems, strict=strict)

@@ -4,7 +4,6 @@ import zlib
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -53,8 +52,8 @@ class Opened:
         self.source, self.salvage = source, salvage
         self.mcz: Mcz = open_mcz(source, salvage=salvage)
         self._places = models
-        self._codec = cache(self._make_codec)
-        self._model = cache(self._find_model)
+        self._codecs: dict[int, Codec] = {}
+        self._models: dict[int, Model | None] = {}
 
     @property
     def damage(self) -> list[Damage]:
@@ -75,14 +74,18 @@ class Opened:
 
     def codec(self, stream: int = 0) -> Codec:
         """Give the codec of a stream."""
-        return self._codec(stream)
+        if stream not in self._codecs:
+            spec = self.streams[stream].codec
+            try:
+                self._codecs[stream] = codecs.from_parameters(spec.id, spec.parameters)
+            except ParameterError as error:
+                raise CorruptError(f"stream {self.streams[stream].name!r}: {error}") from error
+        return self._codecs[stream]
 
-    def _make_codec(self, stream: int) -> Codec:
-        spec = self.streams[stream].codec
-        try:
-            return codecs.from_parameters(spec.id, spec.parameters)
-        except ParameterError as error:
-            raise CorruptError(f"stream {self.streams[stream].name!r}: {error}") from error
+    def _model(self, stream: int) -> Model | None:
+        if stream not in self._models:
+            self._models[stream] = self._find_model(stream)
+        return self._models[stream]
 
     def _find_model(self, stream: int) -> Model | None:
         digest = self.streams[stream].model

@@ -95,7 +95,7 @@ def write(
         return
     of = formats.by_id(to) if to else formats.by_name(path.name)
     if of is None:
-        known = formats.names(formats.writable())
+        known = formats.listed(formats.writable())
         raise UnsupportedError("no format for clips", expected=known, found=repr(path.suffix))
     write_all(printed(with_rate(clip, fps, needed=of.timed), of, path), force=force)
 
@@ -113,7 +113,7 @@ def printed(clip: Clip, of: Format, path: Path) -> dict[Path, bytes]:
 
     """
     if of.write is None:
-        known = formats.names(formats.writable())
+        known = formats.listed(formats.writable())
         raise UnsupportedError("no format for clips", expected=known, found=of.name)
     (_, data), *companions = of.write(of.fit(clip)).items()
     files = {path: data}

@@ -197,19 +197,23 @@ def writer(
         When it cannot be written.
 
     """
-    frame_time = None
-    if rate is not None:
-        exact = Fraction(str(rate)) if isinstance(rate, float) else Fraction(rate)
-        if exact <= 0:
-            raise ParameterError("rate", expected="a number above 0", found=str(rate))
-        frame_time = 1 / exact
     made = codecs.codec(codec) if isinstance(codec, str) else codec
     joints: dict[str, int] = {}
     named = tuple(
         column if isinstance(column, Column) else _column(column, joints) for column in columns
     )
-    stream = Stream(np.empty((0, len(named))), named, frame_time)
+    stream = Stream(np.empty((0, len(named))), named, _frame_time(rate))
     return Recording(path, Clip({name: stream}, skeleton), made, notes or {})
+
+
+def _frame_time(rate: float | Fraction | Decimal | None) -> Fraction | None:
+    if rate is None:
+        return None
+    try:
+        return 1 / max(Fraction(str(rate) if isinstance(rate, float) else rate), Fraction(0))
+    except (ValueError, OverflowError, ZeroDivisionError):
+        found = str(rate)
+        raise ParameterError("rate", expected="a number above 0", found=found) from None
 
 
 def _column(name: str, joints: dict[str, int]) -> Column:

@@ -87,6 +87,8 @@ def contents(opened: Opened, original: Original) -> bytes:
     """Give the original file's bytes, and see that they are these."""
     if not original.format:
         data, lossless = original.contents(), True
+    elif not opened.streams:
+        raise CorruptError("the head of this file is damaged: no numbers can be decoded")
     else:
         data = printed(opened, original, opened.rows())
         lossless = opened.codec().lossless and not opened.damage

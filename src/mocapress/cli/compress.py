@@ -66,6 +66,14 @@ def compress(
     embed_asf: Annotated[
         bool, typer.Option("--embed-asf", help="Also store the skeleton (ASF) of AMC files.")
     ] = False,
+    note: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--note",
+            help="What to say about the files in them, e.g. license=CC-BY-4.0; may be repeated.",
+            metavar="KEY=VALUE",
+        ),
+    ] = None,
     jobs: Jobs = 1,
     force: Force = False,
     json: Json = False,
@@ -85,7 +93,7 @@ def compress(
     learned = open_model(model) if model else None
     to = to or _kind_of(output)
     refuse_other_kinds(output, _ENDINGS[to], known_endings())
-    made = _codec(codec, to, level, learned, target_psnr)
+    made, notes = _codec(codec, to, level, learned, target_psnr), _notes(note or [], to)
     kinds = [of for of in formats() if of.split or (of.read_skeleton and made.lossless)]
     files = plan(
         find(inputs, suffixes(kinds)),
@@ -103,7 +111,7 @@ def compress(
         facts: dict[str, Any] = {}
         if to is Packed.MCZ:
             compressed = api.compress_source(
-                source, made, asf_path=asf, embed_asf=embed_asf, model=learned
+                source, made, asf_path=asf, embed_asf=embed_asf, model=learned, notes=notes
             )
             blob, loss = compressed.blob, compressed.loss
             facts["largest_error"] = loss.most if loss else None
@@ -157,6 +165,17 @@ def _codec(
     except ParameterError as error:
         usage(f"--codec: {error}")
     return made
+
+
+def _notes(texts: list[str], to: Packed) -> dict[str, str]:
+    from mocapress.cli.batch import usage
+
+    notes = dict(text.partition("=")[::2] for text in texts)
+    if any("=" not in text for text in texts) or "" in notes:
+        usage("--note: expected KEY=VALUE")
+    if notes and to is not Packed.MCZ:
+        usage("--note: only a .mcz keeps notes")
+    return notes
 
 
 def _compressed_name(source: Path, to: Packed) -> Path:

@@ -1,7 +1,9 @@
 """``decompress``."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from mocapress.cli.options import Debug, Force, Inputs, Jobs, Json, Models, Output
 
@@ -13,6 +15,16 @@ def decompress(
     inputs: Inputs,
     output: Output = None,
     models: Models = None,
+    salvage: Annotated[
+        bool,
+        typer.Option(
+            "--salvage", help="Restore what is left of damaged files, and say what is lost."
+        ),
+    ] = False,
+    with_asf: Annotated[
+        bool,
+        typer.Option("--with-asf", help="Also restore the skeleton (ASF) that a file holds."),
+    ] = False,
     jobs: Jobs = 1,
     force: Force = False,
     json: Json = False,
@@ -20,12 +32,11 @@ def decompress(
 ) -> None:
     """Restore the original files: byte for byte or, after a lossy codec, with decoded values."""
     from mocapress import api
-    from mocapress.cli.batch import find, run
+    from mocapress.cli.batch import STREAM, find, run
     from mocapress.cli.models import open_models, places_for
     from mocapress.cli.sizes import show_sizes, show_total
     from mocapress.cli.targets import plan
-    from mocapress.container import diffma_json
-    from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES
+    from mocapress.source import JSON_SUFFIXES
 
     given = open_models(models or [])
     files = plan(
@@ -40,14 +51,14 @@ def decompress(
     def work(job: "Job") -> dict[str, Any]:
         assert job.target is not None
         source = job.opened()
-        if source.kind == DIFFMA_JSON:
-            _, data = diffma_json.json_to_file(source.data)
-        else:
-            data = api.decompress(source, models=places_for(job, given))
-        job.outputs[job.target] = data
+        restored = api.restore(source, places_for(job, given), salvage=salvage)
+        job.outputs[job.target] = restored.data
+        if with_asf and job.target != STREAM:
+            for companion in restored.companions:
+                job.outputs[job.target.with_suffix(f".{companion.format}")] = companion.data
         return {
             "output": str(job.target),
-            "raw_bytes": len(data),
+            "raw_bytes": len(restored.data),
             "compressed_bytes": source.size,
         }
 

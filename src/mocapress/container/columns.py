@@ -1,7 +1,6 @@
 """The columns of a stream as a record: docs/format.md, section "Stream"."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import groupby
 from typing import NamedTuple
 
@@ -32,12 +31,10 @@ class Columns(NamedTuple):
 
 def write_columns(writer: Writer, columns: Sequence[Column], skeleton: Skeleton | None) -> None:
     """Append columns in the shortest form that gives them."""
-    plain = tuple(replace(column, decimal=None) for column in columns)
-    bones = bones_of(columns)
     writer.integer(len(columns))
-    if skeleton and _skeleton_columns(skeleton).columns == plain:
+    if skeleton and _alike(_skeleton_columns(skeleton).columns, columns):
         writer.integer(_SKELETON)
-    elif bones:
+    elif bones := bones_of(columns):
         writer.integer(_BONES)
         writer.integer(len(bones))
         expected = 0
@@ -110,6 +107,14 @@ def bones_of(columns: Sequence[Column]) -> tuple[Bone, ...]:
     made = _columns_of(bones, kinds, units)
     same = all(a.name == b.name for a, b in zip(made, columns, strict=True))
     return tuple(bones) if same else ()
+
+
+def _alike(made: Sequence[Column], columns: Sequence[Column]) -> bool:
+    """Tell whether columns are the same but for their number formats."""
+    return len(made) == len(columns) and all(
+        (a.name, a.joint, a.kind, a.unit) == (b.name, b.joint, b.kind, b.unit)
+        for a, b in zip(made, columns, strict=True)
+    )
 
 
 def _skeleton_columns(skeleton: Skeleton) -> Columns:

@@ -9,17 +9,17 @@ from mocapress.errors import CorruptError
 from mocapress.records import Reader, Writer
 
 _STORED, _LZMA, _DEFLATE = range(3)
+_LEAST_LZMA = 2**10
 
 
 def pack(data: bytes) -> bytes:
     """Compress bytes by whichever method makes them smallest."""
-    # Literal context 4 and no position bits suit text, the default suits binary data.
-    filters = [_lzma_filter(len(data), text=True), _lzma_filter(len(data), text=False)]
     candidates = [(_STORED, data)]
-    candidates += [
-        (_LZMA, lzma.compress(data, lzma.FORMAT_RAW, filters=[chain]))
-        for chain in (filters if len(data) < 2**16 else filters[:1])
-    ]
+    # Literal context 4 and no position bits suit text, the default suits binary data; below the
+    # least size the dictionary always wins.
+    for text in (True, False)[: 0 if len(data) < _LEAST_LZMA else 2 if len(data) < 2**16 else 1]:
+        chain = _lzma_filter(len(data), text=text)
+        candidates.append((_LZMA, lzma.compress(data, lzma.FORMAT_RAW, filters=[chain])))
     if len(data) < 2**16:
         deflate = zlib.compressobj(9, zlib.DEFLATED, -15, 9, zdict=_dictionary())
         candidates.append((_DEFLATE, deflate.compress(data) + deflate.flush()))

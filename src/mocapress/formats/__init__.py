@@ -19,7 +19,7 @@ __all__ = [
     "by_id",
     "by_name",
     "formats",
-    "names",
+    "listed",
     "readable",
     "recognise",
     "suffixes",
@@ -111,7 +111,7 @@ def suffixes(of: Iterable[Format]) -> tuple[str, ...]:
     return tuple(sorted({suffix for made in of for suffix in made.suffixes}))
 
 
-def names(of: Iterable[Format], last: str = "or") -> str:
+def listed(of: Iterable[Format], last: str = "or") -> str:
     """List formats for people: ``AMC, ASF or BVH``."""
     *some, final = sorted(made.name for made in of)
     return f"{', '.join(some)} {last} {final}" if some else final

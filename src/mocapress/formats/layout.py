@@ -19,7 +19,8 @@ from mocapress.motion.clip import Clip
 from mocapress.motion.number_format import NumberFormat
 
 MOST_TEMPLATES = 64
-_SAMPLE = 48
+# Of how many rows, and about how many numbers, the texts are looked at to find formats.
+_SAMPLE, _SAMPLED = 48, 3000
 
 Slot = tuple[int, int, int]
 """A number in a row's bytes: its column (-1: the frame's number), where it begins and ends."""
@@ -137,7 +138,8 @@ def build(
 
     frames = len(body.values)
     pending = np.setdiff1d(np.arange(frames), body.unread)
-    places = np.linspace(0, len(pending) - 1, min(len(pending), _SAMPLE)).astype(np.int64)
+    most = min(_SAMPLE, max(_SAMPLED // max(body.values.shape[1], 1), 8))
+    places = np.linspace(0, len(pending) - 1, min(len(pending), most)).astype(np.int64)
     sample = pending[np.unique(places)]
     texts: list[list[bytes | None]] = []
     for index in sample.tolist():

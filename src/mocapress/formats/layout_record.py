@@ -204,19 +204,18 @@ def _read_template(
             of_slots.append(column)
             expected = column + 1
     widths = tuple(reader.raw(len(of_slots))) if flags & _WIDTHS else (0,) * len(of_slots)
-    literals = [bytearray()]
     slots = [-1] * counted + of_slots
-    for code, text in pieces(pattern):
+    texts, codes = pieces(pattern)
+    literals = [bytearray(texts[0])]
+    for code, text in zip(codes, texts[1:], strict=True):
         at = len(literals) - 1
-        if code == -1:
-            literals[-1] += text
-        elif code == BREAK:
-            literals[-1] += style.line_break
+        if code == BREAK:
+            literals[-1] += style.line_break + text
         elif code == NAME and at < len(slots) and slots[at] >= 0 and references.bones:
-            literals[-1] += encoded(references.bones[slots[at]], style.encoding)
+            literals[-1] += encoded(references.bones[slots[at]], style.encoding) + text
         elif code in (VALUE, COUNT) and at < len(slots) and (slots[at] >= 0) == (code == VALUE):
             room.take(len(literals[-1]))
-            literals.append(bytearray())
+            literals.append(bytearray(text))
         else:
             raise reader.fail("a row's pattern refers to what is not there")
         if len(literals[-1]) > room.left:

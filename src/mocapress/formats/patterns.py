@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from decimal import Decimal
 
 from mocapress.errors import CorruptError
@@ -14,9 +14,7 @@ RAW, BREAK, NAME, CHANNELS, COUNT, TIME, PASS, VALUE = range(8)
 """The bytes that stand for something else; what each means depends on where it stands."""
 NUMBER = 0x10
 MOST_FORMATS = 16
-_PIECE = re.compile(
-    rb"\x00(.)|([\x00-\x08\x0b\x0c\x0e-\x1f])|([^\x00-\x08\x0b\x0c\x0e-\x1f]+)", re.S
-)
+_REFERENCE = re.compile(rb"(\x00.?|[\x01-\x08\x0b\x0c\x0e-\x1f])", re.DOTALL)
 _SPECIAL = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f]")
 _WORDS = {
     "tx": "Xposition",
@@ -79,8 +77,13 @@ def raw(text: bytes) -> bytes:
     return _SPECIAL.sub(lambda found: b"\0" + found.group(), text)
 
 
-def pieces(pattern: bytes) -> Iterator[tuple[int, bytes]]:
-    """Give what a pattern consists of: texts, as (-1, text), and references, as (byte, b"").
+def pieces(pattern: bytes) -> tuple[list[bytes], list[int]]:
+    """Part a pattern into texts and the references between them.
+
+    Returns
+    -------
+    tuple
+        Texts, one more than references; and the references' bytes.
 
     Raises
     ------
@@ -88,20 +91,28 @@ def pieces(pattern: bytes) -> Iterator[tuple[int, bytes]]:
         When it ends within a piece.
 
     """
-    position = 0
-    for found in _PIECE.finditer(pattern):
-        position = found.end()
-        code = found.group(2)
-        if code == b"\0":
-            break
-        yield (code[0], b"") if code else (-1, found.group(1) or found.group(3))
-    else:
-        if position == len(pattern):
-            return
-    raise CorruptError("layout: a pattern cut off")
+    parts = _REFERENCE.split(pattern)
+    texts, references = parts[0::2], [part[0] for part in parts[1::2]]
+    if RAW in references:
+        if b"\0" in parts[1::2]:
+            raise CorruptError("layout: a pattern cut off")
+        return _with_raw(parts)
+    return texts, references
 
 
-@dataclass(slots=True)
+def _with_raw(parts: list[bytes]) -> tuple[list[bytes], list[int]]:
+    """Join the texts around bytes that stand for themselves."""
+    texts, references = [bytearray(parts[0])], []
+    for part, text in zip(parts[1::2], parts[2::2], strict=True):
+        if part[0] == RAW:
+            texts[-1] += part[1:] + text
+        else:
+            references.append(part[0])
+            texts.append(bytearray(text))
+    return [bytes(text) for text in texts], references
+
+
+@dataclass(frozen=True, slots=True)
 class Header:
     """Prints the header's pattern."""
 
@@ -112,11 +123,6 @@ class Header:
     most: int
     """Bytes that may come out."""
     print_numbers: Callable[[Sequence[float], NumberFormat], Sequence[bytes]]
-    _out: list[bytes] = field(default_factory=list)
-    _length: int = 0
-    _open: int = 0
-    _joint: int = -1
-    _number: int = 0
 
     def print(self, pattern: bytes) -> bytes:
         """Give the header.
@@ -127,30 +133,42 @@ class Header:
             When the pattern refers to what there is not, or too much comes out.
 
         """
-        texts = self._number_texts(pattern)
-        parts = list(pieces(pattern))
-        for index, (code, text) in enumerate(parts):
-            if code == -1:
-                self._put(text)
-            elif code == BREAK:
-                closes = index + 1 < len(parts) and parts[index + 1][1][:1] == b"}"
-                depth = max(max(self._open, 0) - closes, 0)
-                self._put(self.style.line_break)
-                self._put(self.style.indentation, depth)
+        texts, codes = pieces(pattern)
+        numbers = self._numbers(codes)
+        line_break, indentation = self.style.line_break, self.style.indentation
+        out = [texts[0]]
+        depth, joint, left = texts[0].count(b"{") - texts[0].count(b"}"), -1, self.most
+        for code, text in zip(codes, texts[1:], strict=True):
+            if code == BREAK:
+                steps = max(max(depth, 0) - (text[:1] == b"}"), 0)
+                left -= len(indentation) * steps + len(line_break)
+                if left < 0:
+                    raise CorruptError("layout: a longer header than may be")
+                word = line_break + indentation * steps
             elif code >= NUMBER or code == PASS:
-                self._put(next(texts))
+                word = next(numbers)
             else:
-                self._put(self._word(code))
-        return b"".join(self._out)
+                joint += code == NAME
+                word = self._word(code, joint)
+            if word:
+                out.append(word)
+                if b"{" in word or b"}" in word:
+                    depth += word.count(b"{") - word.count(b"}")
+            if text:
+                out.append(text)
+                if b"{" in text or b"}" in text:
+                    depth += text.count(b"{") - text.count(b"}")
+        header = b"".join(out)
+        if len(header) > self.most:
+            raise CorruptError("layout: a longer header than may be")
+        return header
 
-    def _word(self, code: int) -> bytes:
+    def _word(self, code: int, joint: int) -> bytes:
         refer = self.references
-        if code == NAME:
-            self._joint += 1
-            if self._joint < len(refer.joints):
-                return encoded(refer.joints[self._joint], self.style.encoding)
-        elif code == CHANNELS and 0 <= self._joint < len(refer.channels):
-            words = refer.channels[self._joint]
+        if code == NAME and joint < len(refer.joints):
+            return encoded(refer.joints[joint], self.style.encoding)
+        if code == CHANNELS and 0 <= joint < len(refer.channels):
+            words = refer.channels[joint]
             if words is not None:
                 return words.encode()
         elif code == COUNT:
@@ -159,28 +177,21 @@ class Header:
             return refer.time.encode()
         raise CorruptError("layout: a pattern refers to what is not there")
 
-    def _number_texts(self, pattern: bytes) -> Iterator[bytes]:
+    def _numbers(self, codes: Sequence[int]) -> Iterator[bytes]:
         """Give the texts of the numbers in the order of the pattern; each format prints at once."""
-        codes = [code for code, _ in pieces(pattern) if code >= NUMBER or code == PASS]
-        if len(codes) > len(self.references.numbers):
+        formats = [code for code in codes if code >= NUMBER or code == PASS]
+        if len(formats) > len(self.references.numbers):
             raise CorruptError("layout: more numbers than the skeleton has")
-        texts = [b""] * len(codes)
-        for k in set(codes) - {PASS}:
+        texts = [b""] * len(formats)
+        for k in set(formats) - {PASS}:
             if k - NUMBER >= len(self.style.formats):
                 raise CorruptError("layout: a number in no format")
-            places = [place for place, code in enumerate(codes) if code == k]
+            places = [place for place, code in enumerate(formats) if code == k]
             values = [self.references.numbers[place] for place in places]
             printed = self.print_numbers(values, self.style.formats[k - NUMBER])
             for place, text in zip(places, printed, strict=True):
                 texts[place] = text
         return iter(texts)
-
-    def _put(self, text: bytes, times: int = 1) -> None:
-        self._length += len(text) * times
-        if self._length > self.most:
-            raise CorruptError("layout: a longer header than may be")
-        self._open += times * (text.count(b"{") - text.count(b"}"))
-        self._out.append(text * times)
 
 
 def encoded(name: str, encoding: str) -> bytes:
