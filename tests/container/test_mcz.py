@@ -1,9 +1,12 @@
 """The container: what it holds comes back; every damage is found; it costs what it holds."""
 
 import contextlib
+import hashlib
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
+from importlib import resources
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -465,3 +468,10 @@ def test_what_the_end_costs() -> None:
         for i in range(9)
     ]
     assert len(write_end(entries)) <= 2 * len(entries) + 16
+
+
+def test_the_dictionary_is_the_one_that_the_format_names() -> None:
+    """Whoever changes it makes every file unreadable that was packed with it."""
+    data = (resources.files("mocapress.container") / "dictionary1.bin").read_bytes()
+    page = (Path(__file__).parents[2] / "docs/format.md").read_text()
+    assert hashlib.sha256(data).hexdigest() in page
