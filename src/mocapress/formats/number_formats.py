@@ -43,10 +43,14 @@ def detect(
 
     """
     columns = statistics.shape[0]
-    by_column = [[row[c] for row in texts] for c in range(columns)]
 
     def misses(candidate: NumberFormat) -> list[int]:
-        return [_misses(printed(sample[:, c], candidate), by_column[c]) for c in range(columns)]
+        counts = [0] * columns
+        for ours, theirs in zip(_printed_rows(sample, candidate), texts, strict=True):
+            if ours != theirs:
+                for c, (a, b) in enumerate(zip(ours, theirs, strict=True)):
+                    counts[c] += b is not None and a != b
+        return counts
 
     for candidate in _candidates(merged_statistics(statistics)):
         if not any(misses(candidate)):
@@ -64,10 +68,6 @@ def detect(
         votes.update(np.flatnonzero(counts[:, c] == counts[:, c].min()).tolist())
     order = sorted(range(len(candidates)), key=lambda i: (-votes[i], i))
     return tuple(candidates[min(order, key=lambda i: counts[i, c])] for c in range(columns))
-
-
-def _misses(ours: list[bytes], theirs: list[bytes | None]) -> int:
-    return sum(b is not None and a != b for a, b in zip(ours, theirs, strict=True))
 
 
 def write_format(writer: Writer, f: NumberFormat) -> None:
@@ -96,19 +96,26 @@ def printed(
 ) -> list[bytes]:
     """Print values, (N,), in a format."""
     column = np.array(values, np.float64).reshape(-1, 1)
+    return [text for (text,) in _printed_rows(column, number_format)]
+
+
+def _printed_rows(values: NDArray[np.float64], number_format: NumberFormat) -> list[list[bytes]]:
+    """Print values, (R, C), all in one format."""
+    rows, columns = values.shape
+    literals = [b"", *[b" "] * (columns - 1), b"\n"]
     text: bytes = _core.print_rows(
-        column,
+        np.ascontiguousarray(values),
         np.empty(0, np.int64),
-        np.zeros(len(values), np.int32),
-        [(False, [b"", b"\n"], [0], [0])],
-        packed((number_format,)),
+        np.zeros(rows, np.int32),
+        [(False, literals, list(range(columns)), [0] * columns)],
+        packed((number_format,) * columns),
         np.empty(0, np.uint64),
         np.empty(0, np.uint32),
         [],
         [],
         2**62,
     )
-    return text.split(b"\n")[:-1]
+    return [line.split(b" ") for line in text.split(b"\n")[:-1]]
 
 
 def _candidates(row: NDArray[np.uint8]) -> list[NumberFormat]:
