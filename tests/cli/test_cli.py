@@ -1,5 +1,6 @@
 """The command line as scripts and people use it."""
 
+import hashlib
 import json
 import shutil
 import subprocess
@@ -221,6 +222,20 @@ def test_notes_are_kept(walk: Path) -> None:
     assert facts["notes"] == {"license": "CC0", "source": "a=b"}
     assert facts["name"] == "walk.amc"
     assert mocapress("compress", walk, "-f", "--note", "license").exit_code == 2
+
+
+def test_info_shows_digests_whole_and_names_as_text(tmp_path: Path) -> None:
+    file = tmp_path / "walk[bold].amc"
+    file.write_bytes(AMC)
+    assert mocapress("compress", file, "--note", "license=[/b]").exit_code == 0
+    result = mocapress("info", f"{file}.mcz")
+    assert result.exit_code == 0
+    cells = "".join(
+        line.split("│")[2].strip() for line in result.stdout.splitlines() if "│" in line
+    )
+    assert "walk[bold].amc" in cells
+    assert "license: [/b]" in cells
+    assert hashlib.sha256(AMC).hexdigest() in cells
 
 
 def test_an_embedded_skeleton_comes_back(samples: Path, tmp_path: Path) -> None:
