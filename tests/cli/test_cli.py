@@ -49,7 +49,9 @@ def test_folders_keep_their_shape(tmp_path: Path) -> None:
     for name in ("in/a/one.amc", "in/b/two.AMC", "in/b/notes.txt"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_bytes(AMC)
-    assert mocapress("compress", tmp_path / "in", "-o", tmp_path / "out", "-j", 2).exit_code == 0
+    result = mocapress("compress", tmp_path / "in", "-o", tmp_path / "out", "-j", 2)
+    assert result.exit_code == 0
+    assert "in: not motion, left out: notes.txt" in result.stderr
     found = sorted(str(p.relative_to(tmp_path / "out")) for p in (tmp_path / "out").rglob("*.mcz"))
     assert found == ["a/one.amc.mcz", "b/two.AMC.mcz"]
     result = mocapress("decompress", tmp_path / "out", "-o", tmp_path / "back")
@@ -352,20 +354,15 @@ def test_shells_can_complete(monkeypatch: pytest.MonkeyPatch) -> None:
     assert process().stdout.split() == [b"compress", b"convert"]
 
 
-def test_what_a_lossy_codec_lost_is_measured_and_shown(tmp_path: Path) -> None:
-    shown = mocapress(
-        "compress", GOLDEN / "v1_walk.bvh", "-o", tmp_path / "a.mcz", "--codec=diffma"
-    )
-    words = [
-        "compress",
-        GOLDEN / "v1_walk.bvh",
-        "-o",
-        tmp_path / "b.mcz",
-        "--codec=diffma",
-        "--json",
-    ]
-    (row,) = json.loads(mocapress(*words).stdout)
-    errors = abs(mp.load(tmp_path / "b.mcz").values - mp.read(GOLDEN / "v1_walk.bvh").values)
+@pytest.mark.parametrize("ending", ["mcz", "diffma.json"])
+def test_what_a_lossy_codec_lost_is_measured_and_shown(tmp_path: Path, ending: str) -> None:
+    words = ["compress", GOLDEN / "v1_walk.bvh", "--codec=diffma", "-o"]
+    shown = mocapress(*words, tmp_path / f"a.{ending}")
+    (row,) = json.loads(mocapress(*words, tmp_path / f"b.{ending}", "--json").stdout)
+    decoded = mp.load(tmp_path / f"b.{ending}")
+    errors = abs(decoded.values - mp.read(GOLDEN / "v1_walk.bvh").values)
     assert row["largest_error"] == errors.max() > 0
     assert 0 < row["psnr"] < 100
     assert f"errors up to {errors.max():.3g}" in shown.stdout
+    (facts,) = json.loads(mocapress("info", tmp_path / f"b.{ending}", "--json").stdout)
+    assert facts["lossless"] is False
