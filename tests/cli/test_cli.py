@@ -210,10 +210,12 @@ def test_what_is_left_of_a_damaged_file_can_be_salvaged(tmp_path: Path) -> None:
     result = mocapress("verify", packed, "--json")
     assert result.exit_code == 3
     assert "frames 500 to 999" in result.stdout or "frames 1000 to 1499" in result.stdout
-    assert mocapress("decompress", packed, "-o", restored).exit_code == 1
+    result = mocapress("decompress", packed, "-o", restored)
+    assert result.exit_code == 1
+    assert "--salvage" in result.stderr
     result = mocapress("decompress", packed, "-o", restored, "--salvage")
     assert result.exit_code == 0
-    assert "is lost" in result.stderr
+    assert "lost: frames " in result.stderr
     assert restored.read_bytes().count(b"root") == 1500
 
 
@@ -278,7 +280,7 @@ def test_info_says_what_is_inside(samples: Path, tmp_path: Path) -> None:
 def test_convert_writes_a_file_that_others_read(samples: Path, tmp_path: Path) -> None:
     result = mocapress("convert", samples / "cmu_01_01.amc", "-o", tmp_path / "walk.bvh")
     assert result.exit_code == 0
-    assert f"{samples / 'cmu_01_01.amc'}: the frame rate is not known; 120 fr" in result.stderr
+    assert f"{samples / 'cmu_01_01.amc'}: the sampling rate is not known; 120" in result.stderr
     assert mp.read(tmp_path / "walk.bvh").frames == 2751
     result = mocapress("convert", samples / "freebvh.bvh", "--to", "amc", "-o", tmp_path)
     assert result.exit_code == 0
