@@ -92,6 +92,7 @@ NAMES_FORMATS = {
     "cli/app.py",
     "cli/compress.py",
     "cli/convert.py",
+    "cli/decompress.py",
     "cli/options.py",
     "codecs/diffma/json_types.py",
     "container/diffma_json.py",
