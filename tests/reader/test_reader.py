@@ -118,7 +118,10 @@ def test_float32_is_printed_alike() -> None:
     assert told == printed(values, NumberFormat(NumberKind.SHORTEST32))
 
 
-def test_the_specification_names_the_constants_that_there_are() -> None:
+def test_the_specification_names_the_data_files_that_there_are() -> None:
+    format_page = (ROOT / "docs/format.md").read_text()
+    ((path, digest),) = re.findall(r"the file `(\S+)`, SHA-256 `([0-9a-f]{64})`", format_page)
+    assert hashlib.sha256((ROOT / path).read_bytes()).hexdigest() == digest
     text = (ROOT / "docs/format/exact.md").read_text()
     told = dict(re.findall(r"\| `(\w+\.txt)` \| `([0-9a-f]{64})` \|", text))
     folder = ROOT / "core/exact/data"
