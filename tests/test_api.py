@@ -290,3 +290,15 @@ def test_numbers_that_do_not_fit_the_announced_text_are_refused(samples: Path) -
     writer.end()
     with pytest.raises(mp.CorruptError, match="longer"):
         mp.decompress(b"".join(parts))
+
+
+def test_a_clip_is_written_as_mcz(samples: Path, tmp_path: Path) -> None:
+    clip = mp.read(samples / "freebvh.bvh")
+    mp.write(clip, tmp_path / "walk.mcz")
+    loaded = mp.load(tmp_path / "walk.mcz")
+    assert loaded.values.tobytes() == clip.values.tobytes()
+    assert (loaded.skeleton, loaded.columns, loaded.name) == (
+        clip.skeleton,
+        clip.columns,
+        clip.name,
+    )

@@ -55,4 +55,6 @@ def _show(job: "Job") -> None:
 
 
 def _text(value: Any) -> str:
+    if isinstance(value, dict):
+        return "; ".join(f"{key}: {of_key}" for key, of_key in value.items())
     return f"{value:.4g}" if isinstance(value, float) else str(value)
