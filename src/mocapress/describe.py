@@ -93,7 +93,7 @@ def describe_mcz(
     main = opened.streams[0] if opened.streams else None
     model = main.model if main else b""
     facts: dict[str, Any] = {
-        "format": (original.format or "bytes") if original else "recording",
+        "format": _kind(opened),
         "name": (original.name if original else "") or None,
         "codec": codecs.spec(opened.codec()) if main else "general-purpose",
         "lossless": opened.codec().lossless if main else True,
@@ -127,6 +127,13 @@ def describe_mcz(
         clip = columns.with_frames(opened.rows().values, columns.frame_time)
         facts |= codec.measure(clip, Encoded(main.header, opened.coded()), original.size)
     return facts
+
+
+def _kind(opened: api.Opened) -> str:
+    """Give the id of the original's format, or what else a file holds."""
+    if opened.mcz.original:
+        return opened.mcz.original.format or "bytes"
+    return "recording" if any(stream.frames is None for stream in opened.streams) else "clip"
 
 
 def _found(digest: bytes, models: Sequence[Place]) -> bool:

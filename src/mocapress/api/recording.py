@@ -147,8 +147,14 @@ class Recording:
     def _put(self, data: bytes) -> None:
         assert self._file is not None
         left = memoryview(data)
-        while left:
-            left = left[os.write(self._file, left) :]
+        try:
+            while left:
+                left = left[os.write(self._file, left) :]
+        except OSError:
+            # What is half written would hide what follows; so the rows can be appended again.
+            os.ftruncate(self._file, self._mcz.length)
+            os.lseek(self._file, self._mcz.length, os.SEEK_SET)
+            raise
 
     def _sync(self) -> None:
         assert self._file is not None

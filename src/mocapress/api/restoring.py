@@ -72,7 +72,7 @@ def restore(source: Source, models: Sequence[Place] = (), *, salvage: bool = Fal
         if opened.damage:
             raise CorruptError("the section with the file's layout is damaged")
         raise UnsupportedError(
-            "made from numbers, so there is no original file to restore",
+            "there is no original file: this one was recorded, or made of a clip",
             file=source.name or None,
             expected="mp.load or, if it has a skeleton, mocapress convert",
         )
