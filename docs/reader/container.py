@@ -235,7 +235,9 @@ def read_original(record: Record, file: File) -> None:
 def read_chunk(record: Record, file: File) -> None:
     """Take a chunk."""
     flags = record.integer()
-    stream = file.streams[flags // 4]
+    stream = file.streams[flags // 8]
+    if flags & 5:
+        raise CorruptError("a chunk that needs others, which no codec of this version makes")
     if record.integer() != sum(chunk.frames for chunk in stream.chunks):
         raise CorruptError("a chunk that does not begin where the one before ends")
     frames = record.integer()

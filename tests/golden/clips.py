@@ -36,7 +36,9 @@ def leaps() -> bytes:
         changes[frame, "lowerback"] = f"{frame}e-7 {frame % 5}e-7 {frame % 7}e-7"
         changes[frame, "upperback"] = f"{frame % 3}e-7 {frame % 11}e-7 {frame % 4}e-7"
     frames = [40 * (25 * i % 66) for i in range(66)]
-    return _amc(frames, (*bones, "lclavicle", "lhand", "lthumb", "rhand", "rthumb"), changes)
+    return _amc(
+        frames, (*bones, "lclavicle", "lhand", "lthumb", "rhand", "rfingers", "rthumb"), changes
+    )
 
 
 def _amc(
@@ -142,7 +144,7 @@ def couplings(frames: int = 96) -> bytes:
         follows = [a * b / 30 + a**3 / 9000, a * a / 90 - b**3 / 9000]
         hinge = zyx(turned((0.3, -0.5, 0.8), 30 + h))
         both = zyx(product(there, turned((0, 0, 1), i), turned((1, 0, 0), j / 2), back))
-        around = [(17.3 * f + d + 180) % 360 - 180, (-9.1 * f + e) % 360]
+        around = [(17.3 * f + d + 180) % 360 - 180, e / 4 % 360]
         aligned = xyz(product(turned((0, 0, 1), h / 2), turned((1, 0, 0), g)))
         if f == 2:
             aligned = (90.0, 0.0, 0.0)
@@ -167,7 +169,7 @@ def numbers(frames: int = 48) -> bytes:
         (single,) = struct.unpack("<f", struct.pack("<f", a))
         (radians,) = struct.unpack("<f", struct.pack("<f", math.radians(b)))
         decades = c * 10.0 ** (-12 * abs(math.sin(f / 7)))
-        far = a * 1e9 if f % 19 == 18 else a
+        far = 2.0**45 if f % 19 == 18 else a
         wide = math.copysign(2.0**128 - 2.0**110, a)
         noise = "0.75" if f == 9 else f"{1e-14 * (-1) ** f * (f % 7):.5g}"
         rows.append(
@@ -193,4 +195,38 @@ def wide(frames: int = 5) -> bytes:
         for bone in range(342):
             angles = [50 * math.sin(f / 9 + bone + k) for k in range(3)]
             lines.append(f"b{bone} " + " ".join(f"{angle:.2g}" for angle in angles))
+    return "\n".join([*lines, ""]).encode()
+
+
+def oddities(frames: int = 36) -> bytes:
+    """Give a BVH of which hardly two numbers are printed alike."""
+    waves = [wave(seed, frames, 40) for seed in (14, 15, 16)]
+    rows = []
+    for f in range(frames):
+        a, b, c = (one[f] for one in waves)
+        trimmed = f"{round(c, f % 6):.5f}".rstrip("0").rstrip(".") if f % 5 else "0.00001"
+        rows.append(
+            [
+                *(f"{a * 1e16:.3f}", f"{b / 50:.4f}".replace("0.", "."), trimmed),
+                *(f"{a:.6E}", f"{round(b, f % 2)}", f"{c * 1e-6:.4g}".replace("e-0", "e-00")),
+                *(f"{c:.2f}" if f % 7 else f"{c:+.3f}", f"{a / 1e9:.3g}", f"{b:g}"),
+            ]
+        )
+    text = bvh(["zyx", "xyz"], rows).decode()
+    header, mark, body = text.partition("MOTION")
+    header = header.replace("OFFSET 0 10 0", "OFFSET +1.50 .5 1.0e1\v", 1)
+    body = body.replace("Frame Time: 0.016667", "Frame Time: 2")
+    lines = body.split("\n")
+    lines[9] = lines[9].replace(" ", "\v", 1)
+    return (header + mark + "\n".join(lines)).encode()
+
+
+def disorder(frames: int = 30) -> bytes:
+    """Give an AMC whose bones now and then stand in another order."""
+    lines = ["#made up \x02", ":FULLY-SPECIFIED", ":DEGREES"]
+    for f in range(frames):
+        angles = [wave(17 + k, frames, 30)[f] for k in range(9)]
+        told = [f"{angle:.6g}" for angle in angles]
+        bones = ["root " + " ".join(told[:6]), "a\x02b " + " ".join(told[6:8]), f"c {told[8]}"]
+        lines += [str(f + 1), *(bones if f % 5 else [bones[0], *bones[:0:-1]])]
     return "\n".join([*lines, ""]).encode()

@@ -1,6 +1,7 @@
 """Make golden files; never overwrites one."""
 
 import math
+import random
 import subprocess
 import sys
 import warnings
@@ -18,7 +19,8 @@ import mocapress as mp
 from mocapress.models import model_bytes
 
 HERE = Path(__file__).parent
-sys.path.append(str(HERE.parent / "codecs"))
+sys.path += [str(HERE), str(HERE.parent / "codecs")]
+import clips  # noqa: E402
 import payloads  # noqa: E402
 
 FRAMES = 240
@@ -110,6 +112,21 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_exact_cut.bvh": (WALK_BVH[:-700], "exact:level=2,chunk=80", {}),
     "v1_lossy.amc": (WALK_LF, "diffma:bits=7,chunk=100", {}),
     "v1_lossy.bvh": (WALK_BVH, "diffma:target_psnr=40.0,per=channel,order=auto,chunk=80", {}),
+    # Together with the above they take every branch of the decoders (tests/reader).
+    "v1_random.bin": (random.Random(1).randbytes(200), "exact", {}),
+    "v1_oddities.bvh": (clips.oddities(), "exact:chunk=12", {}),
+    "v1_disorder.amc": (clips.disorder(), "exact:chunk=10", {}),
+    "v1_numbers.bvh": (clips.numbers(), "exact:chunk=16", {}),
+    "v1_couplings.bvh": (clips.couplings(), "exact:level=3,chunk=32", {}),
+    "v1_couplings_lossy.bvh": (clips.couplings(), "diffma:bits=8,order=2,window=3,chunk=30", {}),
+    "v1_leaps.amc": (clips.leaps(), "exact:level=7,chunk=22", {}),
+    "v1_skeleton.amc": (clips.skeleton(), "exact:level=8,chunk=12", {}),
+    "v1_wide.amc": (clips.wide(), "exact:chunk=2", {}),
+}
+# NAME.mcz was coded with the model NAME.mcm, which was learned from the file itself.
+TRAINED = {
+    "v1_trained.bvh": (WALK_BVH, "exact:chunk=80"),
+    "v1_trained_laws.amc": (clips.leaps(), "exact:level=9,chunk=22"),
 }
 # Beside NAME the document NAME.diffma.json; what comes back of it is NAME.
 DOCUMENTS = {
@@ -162,6 +179,12 @@ def streams() -> mp.Clip:
     )
 
 
+def still() -> mp.Clip:
+    """Give a clip in which nothing moves."""
+    walk = mp.read(HERE / "v1_walk.bvh")
+    return mp.Clip.of(np.tile(walk.values[:1], (6, 1)), walk.columns, skeleton=walk.skeleton)
+
+
 def recorded(codec: str, *, closed: bool) -> bytes:
     """Record the walk; one that is not closed has the beginning of a chunk at its end."""
     clip = mp.read(HERE / "v1_walk.amc")
@@ -185,9 +208,9 @@ def embedded() -> bytes:
         return mp.compress(path, "exact:chunk=80", embed_asf=True)
 
 
-def trained() -> mp.Model:
-    """Learn from the walk."""
-    return mp.train([HERE / "v1_walk.bvh"], "exact")
+def trained(name: str, codec: str) -> bytes:
+    """Learn from a golden file."""
+    return model_bytes(mp.train([HERE / name], codec))
 
 
 if __name__ == "__main__":
@@ -200,15 +223,16 @@ if __name__ == "__main__":
     put("v1_embedded.amc", partial(bytes, WALK_LF))
     put("v1_embedded.amc.mcz", embedded)
     put("v1_embedded.companion", partial(bytes, ASF))
-    put("v1_trained.mcm", lambda: model_bytes(trained()))
-    put("v1_trained.bvh", partial(bytes, WALK_BVH))
-    put(
-        "v1_trained.bvh.mcz",
-        lambda: mp.compress(
-            HERE / "v1_trained.bvh", "exact:chunk=80", model=HERE / "v1_trained.mcm"
-        ),
-    )
+    for name, (data, codec) in TRAINED.items():
+        model = HERE / f"{Path(name).stem}.mcm"
+        put(name, partial(bytes, data))
+        put(model.name, partial(trained, name, codec))
+        put(f"{name}.mcz", partial(mp.compress, HERE / name, codec, model=model))
     # Without an original; NAME.f64 holds the numbers.
+    numbers = mp.read(HERE / "v1_numbers.bvh")
+    put("v1_numbers_app.mcz", lambda: mp.compress(numbers, "app:chunk=15"))
+    put("v1_numbers_fast.mcz", lambda: mp.compress(numbers, "exact:level=2,chunk=16"))
+    put("v1_still.mcz", lambda: mp.compress(still(), "exact:chunk=2"))
     put("v1_streams.mcz", lambda: mp.compress(streams(), "exact:chunk=80"))
     put("v1_recorded.mcz", partial(recorded, "exact:chunk=80", closed=True))
     put("v1_recorded_killed.mcz", partial(recorded, "exact:level=1,chunk=80", closed=False))

@@ -45,6 +45,7 @@ CASES = [
     ("leaps.amc", "exact:level=9,chunk=30"),
     ("couplings.bvh", "exact:level=3,chunk=32 with a model"),
     ("leaps.amc", "exact:level=9,chunk=30 with a model"),
+    ("numbers.bvh", "exact:chunk=16 with a model"),
 ]
 
 
@@ -118,7 +119,10 @@ def test_float32_is_printed_alike() -> None:
     assert told == printed(values, NumberFormat(NumberKind.SHORTEST32))
 
 
-def test_the_specification_names_the_constants_that_there_are() -> None:
+def test_the_specification_names_the_data_files_that_there_are() -> None:
+    format_page = (ROOT / "docs/format.md").read_text()
+    ((path, digest),) = re.findall(r"the file `(\S+)`, SHA-256 `([0-9a-f]{64})`", format_page)
+    assert hashlib.sha256((ROOT / path).read_bytes()).hexdigest() == digest
     text = (ROOT / "docs/format/exact.md").read_text()
     told = dict(re.findall(r"\| `(\w+\.txt)` \| `([0-9a-f]{64})` \|", text))
     folder = ROOT / "core/exact/data"

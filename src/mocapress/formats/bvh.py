@@ -34,9 +34,8 @@ def split(data: bytes, _skeleton: Skeleton | None = None, file: str | None = Non
     body, hierarchy, lines, problems = read_body(data, file)
     columns = skeleton_columns(hierarchy.skeleton)
     clip = Clip.of(body.values, columns, hierarchy.frame_time, hierarchy.skeleton)
-    return split_of(
-        clip, build("bvh", data, body, partial(slots_of_row, lines=lines)), problems, file
-    )
+    slots, texts = partial(slots_of_row, lines=lines), partial(texts_of_row, lines=lines)
+    return split_of(clip, build("bvh", data, body, slots, texts), problems, file)
 
 
 def write(clip: Clip) -> dict[str, bytes]:
@@ -123,11 +122,20 @@ def _problems(
 
 def slots_of_row(text: bytes, lines: int = 1) -> list[Slot]:
     """Find the numbers in the bytes of a row of so many lines."""
-    end = len(text)
-    if text.lstrip()[:1] != b"#":
-        ends = [found.start() for found in islice(re.finditer(rb"\n", text), lines)]
-        end = ends[-1] if len(ends) == lines else end
-    return [(column, *token.span()) for column, token in enumerate(_TOKEN.finditer(text, 0, end))]
+    tokens = _TOKEN.finditer(text, 0, _end_of_numbers(text, lines))
+    return [(column, *token.span()) for column, token in enumerate(tokens)]
+
+
+def texts_of_row(text: bytes, lines: int = 1) -> list[bytes]:
+    """Give the numbers in the bytes of a row of so many lines as they are written."""
+    return text[: _end_of_numbers(text, lines)].split()
+
+
+def _end_of_numbers(text: bytes, lines: int) -> int:
+    if text.lstrip()[:1] == b"#":
+        return len(text)
+    ends = [found.start() for found in islice(re.finditer(rb"\n", text), lines)]
+    return ends[-1] if len(ends) == lines else len(text)
 
 
 FORMAT = Format(

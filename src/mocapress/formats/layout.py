@@ -19,8 +19,8 @@ from mocapress.motion.clip import Clip
 from mocapress.motion.number_format import NumberFormat
 
 MOST_TEMPLATES = 64
-# Of how many rows, and about how many numbers, the texts are looked at to find formats.
-_SAMPLE, _SAMPLED = 48, 3000
+# Of how many rows the texts are looked at to find formats.
+_SAMPLE = 48
 
 Slot = tuple[int, int, int]
 """A number in a row's bytes: its column (-1: the frame's number), where it begins and ends."""
@@ -121,11 +121,23 @@ class Layout:
 
 
 def build(
-    kind: str, data: bytes, body: Body, slots_of_row: Callable[[bytes], list[Slot]]
+    kind: str,
+    data: bytes,
+    body: Body,
+    slots_of_row: Callable[[bytes], list[Slot]],
+    texts_of_row: Callable[[bytes], Sequence[bytes | None]] | None = None,
 ) -> Layout:
     """Find the layout of a file whose rows are read.
 
-    ``slots_of_row`` gives where the numbers of a row's bytes stand, in order.
+    Parameters
+    ----------
+    kind, data, body
+        Id of the format, the file and its rows.
+    slots_of_row
+        Gives where the numbers of a row's bytes stand, in order.
+    texts_of_row
+        Gives the texts of a row's columns, where that takes less time than ``slots_of_row``.
+
     """
     offsets = body.offsets.astype(np.int64)
     slots: dict[int, tuple[bytes, list[Slot]]] = {}
@@ -138,16 +150,20 @@ def build(
 
     frames = len(body.values)
     pending = np.setdiff1d(np.arange(frames), body.unread)
-    most = min(_SAMPLE, max(_SAMPLED // max(body.values.shape[1], 1), 8))
-    places = np.linspace(0, len(pending) - 1, min(len(pending), most)).astype(np.int64)
+    places = np.linspace(0, len(pending) - 1, min(len(pending), _SAMPLE)).astype(np.int64)
     sample = pending[np.unique(places)]
-    texts: list[list[bytes | None]] = []
-    for index in sample.tolist():
-        texts.append([None] * body.values.shape[1])
+
+    def texts_of(index: int) -> Sequence[bytes | None]:
+        columns = body.values.shape[1]
+        if texts_of_row:
+            found = texts_of_row(data[offsets[index] : offsets[index + 1]])
+            if len(found) == columns:
+                return found
         text, numbers = row(index)
-        for column, start, end in numbers:
-            if column >= 0:
-                texts[-1][column] = text[start:end]
+        places = {column: text[start:end] for column, start, end in numbers}
+        return [places.get(column) for column in range(columns)]
+
+    texts = [texts_of(index) for index in sample.tolist()]
     formats = detect(body.statistics, body.values[sample], texts)
 
     templates: list[RowTemplate] = []

@@ -26,7 +26,9 @@ def packed(formats: tuple[NumberFormat, ...]) -> NDArray[np.uint8]:
 
 
 def detect(
-    statistics: NDArray[np.uint8], sample: NDArray[np.float64], texts: list[list[bytes | None]]
+    statistics: NDArray[np.uint8],
+    sample: NDArray[np.float64],
+    texts: Sequence[Sequence[bytes | None]],
 ) -> tuple[NumberFormat, ...]:
     """Choose a format per column.
 
