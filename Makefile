@@ -114,6 +114,7 @@ $(VENV)/.installed: pyproject.toml CMakeLists.txt $(kernels) $(headers) $(wildca
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "mocapress needs Python 3.11 or later; PYTHON=... names one"; exit 1; }
 	@command -v $(CXX) >/dev/null || { echo "mocapress needs a C++20 compiler: g++ 12 or clang 15 (Debian: apt-get install g++)"; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@echo "building the C++ core: about a minute on one core"
 	CXX=$(CXX) $(BIN)/pip install --quiet --disable-pip-version-check --editable .
 	@touch $@
 

@@ -74,7 +74,9 @@ class Recording:
         values = np.atleast_2d(np.array(rows, np.float64))
         if values.ndim != 2 or values.shape[1] != self._clip.channels:
             raise ParameterError(
-                "rows", expected=f"(n, {self._clip.channels})", found=str(values.shape)
+                "rows of another shape",
+                expected=f"(n, {self._clip.channels})",
+                found=str(values.shape),
             )
         if self._file is None:
             raise ParameterError("the recording is closed")

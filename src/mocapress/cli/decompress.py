@@ -36,7 +36,8 @@ def decompress(
     from mocapress.cli.models import open_models, places_for
     from mocapress.cli.sizes import show_sizes, show_total
     from mocapress.cli.targets import plan
-    from mocapress.source import JSON_SUFFIXES
+    from mocapress.errors import CorruptError
+    from mocapress.source import JSON_SUFFIXES, MCZ
 
     given = open_models(models or [])
     files = plan(
@@ -51,7 +52,12 @@ def decompress(
     def work(job: "Job") -> dict[str, Any]:
         assert job.target is not None
         source = job.opened()
-        restored = api.restore(source, places_for(job, given), salvage=salvage)
+        try:
+            restored = api.restore(source, places_for(job, given), salvage=salvage)
+        except CorruptError as error:
+            if not salvage and source.kind == MCZ:
+                error.what += " (--salvage restores what is left)"
+            raise
         job.outputs[job.target] = restored.data
         if with_asf and job.target != STREAM:
             for companion in restored.companions:
