@@ -45,17 +45,19 @@ def detect(
 
     """
     columns = statistics.shape[0]
+    theirs = [text for row in texts for text in row[:columns]]
 
-    def misses(candidate: NumberFormat) -> list[int]:
-        counts = [0] * columns
-        for ours, theirs in zip(_printed_rows(sample, candidate), texts, strict=True):
-            if ours != theirs:
-                for c, (a, b) in enumerate(zip(ours, theirs, strict=True)):
-                    counts[c] += b is not None and a != b
+    def misses(candidate: NumberFormat) -> NDArray[np.int64]:
+        """Count the numbers of each column that are written otherwise, (C,)."""
+        ours = printed(sample.ravel(), candidate)
+        if ours == theirs:
+            return np.zeros(columns, np.int64)
+        wrong = [b is not None and a != b for a, b in zip(ours, theirs, strict=True)]
+        counts: NDArray[np.int64] = np.array(wrong, np.int64).reshape(-1, columns).sum(axis=0)
         return counts
 
     for candidate in _candidates(merged_statistics(statistics)):
-        if not any(misses(candidate)):
+        if not misses(candidate).any():
             return tuple(candidate for _ in range(columns))
     candidates = list(
         dict.fromkeys(
@@ -98,26 +100,19 @@ def printed(
 ) -> list[bytes]:
     """Print values, (N,), in a format."""
     column = np.array(values, np.float64).reshape(-1, 1)
-    return [text for (text,) in _printed_rows(column, number_format)]
-
-
-def _printed_rows(values: NDArray[np.float64], number_format: NumberFormat) -> list[list[bytes]]:
-    """Print values, (R, C), all in one format."""
-    rows, columns = values.shape
-    literals = [b"", *[b" "] * (columns - 1), b"\n"]
     text: bytes = _core.print_rows(
-        np.ascontiguousarray(values),
+        column,
         np.empty(0, np.int64),
-        np.zeros(rows, np.int32),
-        [(False, literals, list(range(columns)), [0] * columns)],
-        packed((number_format,) * columns),
+        np.zeros(len(values), np.int32),
+        [(False, [b"", b"\n"], [0], [0])],
+        packed((number_format,)),
         np.empty(0, np.uint64),
         np.empty(0, np.uint32),
         [],
         [],
         2**62,
     )
-    return [line.split(b" ") for line in text.split(b"\n")[:-1]]
+    return text.split(b"\n")[:-1]
 
 
 def _candidates(row: NDArray[np.uint8]) -> list[NumberFormat]:
