@@ -34,6 +34,17 @@ def test_there_and_back(walk: Path) -> None:
     assert walk.read_bytes() == AMC
 
 
+def test_a_name_without_a_suffix_gets_that_of_the_original(walk: Path) -> None:
+    small = walk.with_name("small.mcz")
+    assert mocapress("compress", walk, "-o", small).exit_code == 0
+    assert mocapress("decompress", small).exit_code == 0
+    assert walk.with_name("small.amc").read_bytes() == AMC
+    walk.with_name("junk.mcz").write_bytes(b"no such file")
+    result = mocapress("decompress", walk.with_name("junk.mcz"))
+    assert result.exit_code == 1
+    assert "not a .mcz file" in result.stderr
+
+
 def test_nothing_is_overwritten_without_force(walk: Path) -> None:
     packed = walk.with_name("walk.amc.mcz")
     packed.write_bytes(b"precious")
@@ -88,14 +99,14 @@ def test_json_is_for_machines(walk: Path, tmp_path: Path) -> None:
         (["compress", "walk.amc", "--codec", "app", "--level", "3"], 2, "app has no levels"),
         (["compress", "walk.amc", "--level", "10"], 2, "10 is not in the range 1<=x<=9"),
         (["compress", "walk.amc", "--model", "no.mcm"], 1, "no.mcm: No such file"),
-        (["compress", "walk.amc", "--model", "walk.amc"], 1, "walk.amc, byte 0: not an .mcm file"),
+        (["compress", "walk.amc", "--model", "walk.amc"], 1, "walk.amc, byte 0: not a .mcm file"),
         (["compress", "walk.amc", "--codec", "app", "--model", "v1.mcm"], 2, "takes no model"),
         (["train", "walk.amc", "-o", "x.mcm", "--codec", "app"], 2, "app takes no model"),
         (["train", "walk.amc"], 2, "Missing option '-o'"),
         (["info", "walk.amc", "--model", "no.mcm"], 1, "no.mcm: No such file"),
         (["decompress", "walk.amc"], 2, "-o gives it"),
-        (["decompress", "walk.amc", "-o", "x"], 1, "not an .mcz file"),
-        (["verify", "walk.amc"], 3, "not an .mcz file"),
+        (["decompress", "walk.amc", "-o", "x"], 1, "not a .mcz file"),
+        (["verify", "walk.amc"], 3, "not a .mcz file"),
         (["info", "missing"], 1, "No such file"),
         (["convert", "walk.amc", "-o", "x.bvh"], 1, "no skeleton"),
         (["compress", "walk.amc", "--codec", "app", "-o", "x.diffma.json"], 2, "expected diffma"),

@@ -76,7 +76,8 @@ def _original_name(source: Path) -> Path:
     from mocapress.errors import MocapressError, ParameterError
 
     if source.suffix.lower() == ".mcz":
-        return source.with_name(source.name[:-4])
+        named = source.with_name(source.name[:-4])
+        return named if named.suffix else named.with_suffix(_original_suffix(source))
     stem = diffma_json.stem(source.name)
     if stem == source.name:
         raise ParameterError(
@@ -87,3 +88,19 @@ def _original_name(source: Path) -> Path:
     except MocapressError as error:
         error.file = str(source)
         raise
+
+
+def _original_suffix(packed: Path) -> str:
+    """Give the suffix of the original's name, if the file can be read that far and knows it."""
+    from mocapress.container import open_mcz
+    from mocapress.errors import MocapressError
+    from mocapress.source import Source
+
+    if not packed.is_file():  # a pipe can be read only once
+        return ""
+    try:
+        original = open_mcz(Source(packed), salvage=True).original
+    except (MocapressError, OSError):
+        return ""
+    suffix = Path(original.name).suffix if original else ""
+    return suffix if suffix[1:].isalnum() else ""
