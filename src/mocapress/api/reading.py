@@ -100,7 +100,9 @@ def write(
     of = formats.by_id(to) if to else formats.by_name(path.name)
     if of is None:
         known = formats.listed(formats.writable())
-        raise UnsupportedError("no format for clips", expected=known, found=repr(path.suffix))
+        raise UnsupportedError(
+            "no format to write clips in", expected=known, found=repr(path.suffix)
+        )
     write_all(printed(with_rate(clip, fps, needed=of.timed), of, path), force=force)
 
 
@@ -118,7 +120,7 @@ def printed(clip: Clip, of: Format, path: Path) -> dict[Path, bytes]:
     """
     if of.write is None:
         known = formats.listed(formats.writable())
-        raise UnsupportedError("no format for clips", expected=known, found=of.name)
+        raise UnsupportedError("no format to write clips in", expected=known, found=of.name)
     (_, data), *companions = of.write(of.fit(clip)).items()
     files = {path: data}
     for suffix, contents in companions:
