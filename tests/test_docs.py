@@ -33,6 +33,17 @@ def test_the_guide_to_compressed_clips_runs(
     exec("\n".join(re.findall(r"```python\n(.*?)```", guide, re.DOTALL)), {})
 
 
+def test_the_guide_to_models_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "library").mkdir()
+    for name in ("library/walk.amc", "take1.amc"):
+        shutil.copy(ROOT / "tests/golden/v1_trained_laws.amc", tmp_path / name)
+    monkeypatch.chdir(tmp_path)
+    (code,) = re.findall(
+        r"```python\n(.*?)```", (ROOT / "docs/guide/models.md").read_text(), re.DOTALL
+    )
+    exec(code, {})
+
+
 def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for suffix in ("amc", "asf"):
         shutil.copy(ROOT / f"samples/cmu_01_01.{suffix}", tmp_path / f"walk.{suffix}")
