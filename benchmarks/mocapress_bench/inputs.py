@@ -35,6 +35,8 @@ def clips_named(corpus: Path | None) -> tuple[list[Path], Path]:
     folder = corpus or SAMPLES
     if corpus is None and not folder.is_dir():
         usage("name a folder of clips")
+    if not folder.exists():
+        usage(f"{folder}: no such file or folder")
     paths = clips_in(folder) if folder.is_dir() else [folder]
     if not paths:
         usage(f"no {listed(readable())} files in {folder}")

@@ -103,7 +103,7 @@ def describe_mcz(
         "compressed_bytes": mcz.size,
         "ratio": original.size / mcz.size if original else None,
         "chunk_bytes": sum(entry.end - entry.begin for entry in mcz.entries) or None,
-        "layout_bytes": len(original.packed) if original else None,
+        "layout_bytes": len(original.packed) if original and original.format else None,
         "companions": ", ".join(companion.name for companion in mcz.companions) or None,
         "chunks": len(mcz.entries),
         "closed": mcz.closed,
