@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 CORPUS_SOURCE := ../shared/data
 SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -Icore
-FUZZ_RUNS ?= 100000
+FUZZ_RUNS ?= 20000
 sources := $(wildcard core/*/*.cpp core/*/*.hpp)
 headers := $(filter %.hpp,$(sources)) $(wildcard core/exact/data/*)
 kernels := $(filter-out core/python/% core/check/% core/fuzz/%,$(filter %.cpp,$(sources)))
@@ -21,6 +21,7 @@ test: check sanitize test-js tests
 long: $(VENV)/.built corpus
 	$(BIN)/python tests/campaigns/kills.py --runs 1000 \
 	    $(if $(wildcard corpus/.version),--corpus corpus) --every-call
+	$(MAKE) sanitize FUZZ_RUNS=1000000
 
 check: $(VENV)/.built
 	$(BIN)/ruff format --check .
@@ -114,6 +115,7 @@ $(VENV)/.installed: pyproject.toml CMakeLists.txt $(kernels) $(headers) $(wildca
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "mocapress needs Python 3.11 or later; PYTHON=... names one"; exit 1; }
 	@command -v $(CXX) >/dev/null || { echo "mocapress needs a C++20 compiler: g++ 12 or clang 15 (Debian: apt-get install g++)"; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@echo "building the C++ core: about a minute on one core"
 	CXX=$(CXX) $(BIN)/pip install --quiet --disable-pip-version-check --editable .
 	@touch $@
 

@@ -323,3 +323,34 @@ def test_numbers_that_do_not_fit_the_announced_text_are_refused(samples: Path) -
     writer.end()
     with pytest.raises(mp.CorruptError, match="longer"):
         mp.decompress(b"".join(parts))
+
+
+def test_a_clip_is_written_as_mcz(samples: Path, tmp_path: Path) -> None:
+    clip = mp.read(samples / "freebvh.bvh")
+    mp.write(clip, tmp_path / "walk.mcz")
+    loaded = mp.load(tmp_path / "walk.mcz")
+    assert loaded.values.tobytes() == clip.values.tobytes()
+    assert (loaded.skeleton, loaded.columns, loaded.name) == (
+        clip.skeleton,
+        clip.columns,
+        clip.name,
+    )
+
+
+def test_one_frame_needs_a_part_of_the_file(
+    samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    packed = tmp_path / "walk.mcz"
+    packed.write_bytes(mp.compress(samples / "cmu_01_01.amc", "exact:level=1,chunk=200"))
+    pread, taken = os.pread, []
+
+    def counted(file: int, count: int, offset: int) -> bytes:
+        data = pread(file, count, offset)
+        taken.append(len(data))
+        return data
+
+    monkeypatch.setattr(os, "pread", counted)
+    assert mp.load(packed, slice(1500, 1501)).frames == 1
+    # 14 chunks, of which one is read, and up to 80 KiB at the front to see what the file is.
+    assert sum(taken) < packed.stat().st_size / 10 + 80 * 1024
+    assert sum(taken) < packed.stat().st_size / 2

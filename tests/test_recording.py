@@ -1,5 +1,6 @@
 """Recordings: what was appended is in the file, whatever happens to the process."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -112,6 +113,28 @@ def test_an_error_in_the_middle_keeps_what_was_there(tmp_path: Path) -> None:
     with pytest.raises(RuntimeError):
         capture()
     assert mp.load(tmp_path / "take.mcz").values.tobytes() == wave(70).tobytes()
+
+
+def test_a_full_disk_loses_nothing_that_was_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was half written is taken back, and the rows are written with the next."""
+    write, free = os.write, [3]
+
+    def full(file: int, data: bytes) -> int:
+        if free[0] == 0:
+            raise OSError(28, "No space left on device")
+        free[0] -= 1
+        return write(file, data[:40])
+
+    with mp.writer(tmp_path / "take.mcz", COLUMNS, 120, codec="exact:chunk=50") as recording:
+        recording.append(wave(50))
+        monkeypatch.setattr(os, "write", full)
+        with pytest.raises(OSError, match="No space"):
+            recording.append(wave(110)[50:])
+        monkeypatch.setattr(os, "write", write)
+        recording.append(wave(120)[110:])
+    assert mp.load(tmp_path / "take.mcz").values.tobytes() == wave(120).tobytes()
 
 
 @pytest.mark.filterwarnings("ignore:.*not closed:mocapress.MotionWarning")

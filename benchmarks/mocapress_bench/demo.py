@@ -20,7 +20,16 @@ def demo(debug: Debug = False) -> None:  # noqa: ARG001
     rows, notes = measure(paths, root, only=",".join([*lossless, "gzip -9", "xz -9e"]))
     say(notes)
     table = Table(title="Compressed, restored and compared with the original by SHA-256")
-    for name in ("clip", "codec", "raw", "compressed", "ratio", "µs/frame", "back", "restored"):
+    for name in (
+        "clip",
+        "codec",
+        "bytes",
+        "compressed",
+        "ratio",
+        "encode, µs/frame",
+        "decode",
+        "restored (SHA-256)",
+    ):
         table.add_column(name, justify="left" if name in ("clip", "codec") else "right")
     last = None
     for row in rows:

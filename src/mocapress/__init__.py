@@ -30,11 +30,13 @@ if TYPE_CHECKING:
     from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton, Stream
     from mocapress.motion.convert import to_amc_clip, to_bvh_clip
     from mocapress.motion.kinematics import positions, rotations
+    from mocapress.storage import ExistsError
 
 __all__ = [
     "Clip",
     "Column",
     "CorruptError",
+    "ExistsError",
     "FormatError",
     "Joint",
     "MissingModelError",
@@ -74,6 +76,7 @@ _LAZY = {
     **dict.fromkeys(("Model", "codec"), "mocapress.codecs"),
     **dict.fromkeys(("to_amc_clip", "to_bvh_clip"), "mocapress.motion.convert"),
     "to_json": "mocapress.container.diffma_json",
+    "ExistsError": "mocapress.storage",
     **dict.fromkeys(
         ("Clip", "Column", "Joint", "NumberFormat", "Skeleton", "Stream"), "mocapress.motion"
     ),

@@ -28,11 +28,7 @@ def describe_clip(clip: Clip, frames: int | None = None) -> dict[str, Any]:
     frames = clip.frames if frames is None else frames
     if clip.frame_time:
         seconds = float(clip.frame_time * frames)
-    kinds = {
-        f"{column.decimal.kind.name.lower()} {column.decimal.digits}"
-        for column in clip.columns
-        if column.decimal
-    }
+    kinds = {str(column.decimal) for column in clip.columns if column.decimal}
     return {
         "frames": frames,
         "channels": clip.channels,
@@ -65,6 +61,7 @@ def describe_json(blob: bytes) -> dict[str, Any]:
     orders = sorted({plan.order for plan in document.plans})
     facts: dict[str, Any] = {
         "format": "diffma.json",
+        "lossless": False,
         "compressed_bytes": len(blob),
         "bits": document.coding.bits,
         "window": document.coding.window,
@@ -96,9 +93,10 @@ def describe_mcz(
     main = opened.streams[0] if opened.streams else None
     model = main.model if main else b""
     facts: dict[str, Any] = {
-        "format": (original.format or "bytes") if original else "recording",
+        "format": _kind(opened),
         "name": (original.name if original else "") or None,
         "codec": codecs.spec(opened.codec()) if main else "general-purpose",
+        "lossless": opened.codec().lossless if main else True,
         "model": model.hex() or None,
         "model_found": _found(model, models) if model else None,
         "raw_bytes": original.size if original else None,
@@ -129,6 +127,13 @@ def describe_mcz(
         clip = columns.with_frames(opened.rows().values, columns.frame_time)
         facts |= codec.measure(clip, Encoded(main.header, opened.coded()), original.size)
     return facts
+
+
+def _kind(opened: api.Opened) -> str:
+    """Give the id of the original's format, or what else a file holds."""
+    if opened.mcz.original:
+        return opened.mcz.original.format or "bytes"
+    return "recording" if any(stream.frames is None for stream in opened.streams) else "clip"
 
 
 def _found(digest: bytes, models: Sequence[Place]) -> bool:

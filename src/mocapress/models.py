@@ -134,7 +134,7 @@ def find_model(digest: bytes, places: Iterable[Place], folder: Path | None = Non
         others.append(_name(place))
     raise MissingModelError(
         f"model {digest.hex()} is needed",
-        expected=f"it in {', '.join(map(_name, looked))}"
+        expected=f"it in {', '.join(dict.fromkeys(map(_name, looked)))}"
         if looked
         else f"it given, beside the file, or in a folder that {FOLDERS_VARIABLE} names",
         found=_few(list(dict.fromkeys(others))) or "no models",

@@ -1,5 +1,6 @@
 """The command line as scripts and people use it."""
 
+import hashlib
 import json
 import shutil
 import subprocess
@@ -33,6 +34,17 @@ def test_there_and_back(walk: Path) -> None:
     assert walk.read_bytes() == AMC
 
 
+def test_a_name_without_a_suffix_gets_that_of_the_original(walk: Path) -> None:
+    small = walk.with_name("small.mcz")
+    assert mocapress("compress", walk, "-o", small).exit_code == 0
+    assert mocapress("decompress", small).exit_code == 0
+    assert walk.with_name("small.amc").read_bytes() == AMC
+    walk.with_name("junk.mcz").write_bytes(b"no such file")
+    result = mocapress("decompress", walk.with_name("junk.mcz"))
+    assert result.exit_code == 1
+    assert "not a .mcz file" in result.stderr
+
+
 def test_nothing_is_overwritten_without_force(walk: Path) -> None:
     packed = walk.with_name("walk.amc.mcz")
     packed.write_bytes(b"precious")
@@ -48,7 +60,9 @@ def test_folders_keep_their_shape(tmp_path: Path) -> None:
     for name in ("in/a/one.amc", "in/b/two.AMC", "in/b/notes.txt"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_bytes(AMC)
-    assert mocapress("compress", tmp_path / "in", "-o", tmp_path / "out", "-j", 2).exit_code == 0
+    result = mocapress("compress", tmp_path / "in", "-o", tmp_path / "out", "-j", 2)
+    assert result.exit_code == 0
+    assert "in: not motion, left out: notes.txt" in result.stderr
     found = sorted(str(p.relative_to(tmp_path / "out")) for p in (tmp_path / "out").rglob("*.mcz"))
     assert found == ["a/one.amc.mcz", "b/two.AMC.mcz"]
     result = mocapress("decompress", tmp_path / "out", "-o", tmp_path / "back")
@@ -85,14 +99,14 @@ def test_json_is_for_machines(walk: Path, tmp_path: Path) -> None:
         (["compress", "walk.amc", "--codec", "app", "--level", "3"], 2, "app has no levels"),
         (["compress", "walk.amc", "--level", "10"], 2, "10 is not in the range 1<=x<=9"),
         (["compress", "walk.amc", "--model", "no.mcm"], 1, "no.mcm: No such file"),
-        (["compress", "walk.amc", "--model", "walk.amc"], 1, "walk.amc, byte 0: not an .mcm file"),
+        (["compress", "walk.amc", "--model", "walk.amc"], 1, "walk.amc, byte 0: not a .mcm file"),
         (["compress", "walk.amc", "--codec", "app", "--model", "v1.mcm"], 2, "takes no model"),
         (["train", "walk.amc", "-o", "x.mcm", "--codec", "app"], 2, "app takes no model"),
         (["train", "walk.amc"], 2, "Missing option '-o'"),
         (["info", "walk.amc", "--model", "no.mcm"], 1, "no.mcm: No such file"),
         (["decompress", "walk.amc"], 2, "-o gives it"),
-        (["decompress", "walk.amc", "-o", "x"], 1, "not an .mcz file"),
-        (["verify", "walk.amc"], 3, "not an .mcz file"),
+        (["decompress", "walk.amc", "-o", "x"], 1, "not a .mcz file"),
+        (["verify", "walk.amc"], 3, "not a .mcz file"),
         (["info", "missing"], 1, "No such file"),
         (["convert", "walk.amc", "-o", "x.bvh"], 1, "no skeleton"),
         (["compress", "walk.amc", "--codec", "app", "-o", "x.diffma.json"], 2, "expected diffma"),
@@ -207,10 +221,12 @@ def test_what_is_left_of_a_damaged_file_can_be_salvaged(tmp_path: Path) -> None:
     result = mocapress("verify", packed, "--json")
     assert result.exit_code == 3
     assert "frames 500 to 999" in result.stdout or "frames 1000 to 1499" in result.stdout
-    assert mocapress("decompress", packed, "-o", restored).exit_code == 1
+    result = mocapress("decompress", packed, "-o", restored)
+    assert result.exit_code == 1
+    assert "--salvage" in result.stderr
     result = mocapress("decompress", packed, "-o", restored, "--salvage")
     assert result.exit_code == 0
-    assert "is lost" in result.stderr
+    assert "lost: frames " in result.stderr
     assert restored.read_bytes().count(b"root") == 1500
 
 
@@ -221,6 +237,20 @@ def test_notes_are_kept(walk: Path) -> None:
     assert facts["notes"] == {"license": "CC0", "source": "a=b"}
     assert facts["name"] == "walk.amc"
     assert mocapress("compress", walk, "-f", "--note", "license").exit_code == 2
+
+
+def test_info_shows_digests_whole_and_names_as_text(tmp_path: Path) -> None:
+    file = tmp_path / "walk[bold].amc"
+    file.write_bytes(AMC)
+    assert mocapress("compress", file, "--note", "license=[/b]").exit_code == 0
+    result = mocapress("info", f"{file}.mcz")
+    assert result.exit_code == 0
+    cells = "".join(
+        line.split("│")[2].strip() for line in result.stdout.splitlines() if "│" in line
+    )
+    assert "walk[bold].amc" in cells
+    assert "license: [/b]" in cells
+    assert hashlib.sha256(AMC).hexdigest() in cells
 
 
 def test_an_embedded_skeleton_comes_back(samples: Path, tmp_path: Path) -> None:
@@ -261,7 +291,7 @@ def test_info_says_what_is_inside(samples: Path, tmp_path: Path) -> None:
 def test_convert_writes_a_file_that_others_read(samples: Path, tmp_path: Path) -> None:
     result = mocapress("convert", samples / "cmu_01_01.amc", "-o", tmp_path / "walk.bvh")
     assert result.exit_code == 0
-    assert f"{samples / 'cmu_01_01.amc'}: the frame rate is not known; 120 fr" in result.stderr
+    assert f"{samples / 'cmu_01_01.amc'}: the sampling rate is not known; 120" in result.stderr
     assert mp.read(tmp_path / "walk.bvh").frames == 2751
     result = mocapress("convert", samples / "freebvh.bvh", "--to", "amc", "-o", tmp_path)
     assert result.exit_code == 0
@@ -337,20 +367,15 @@ def test_shells_can_complete(monkeypatch: pytest.MonkeyPatch) -> None:
     assert process().stdout.split() == [b"compress", b"convert"]
 
 
-def test_what_a_lossy_codec_lost_is_measured_and_shown(tmp_path: Path) -> None:
-    shown = mocapress(
-        "compress", GOLDEN / "v1_walk.bvh", "-o", tmp_path / "a.mcz", "--codec=diffma"
-    )
-    words = [
-        "compress",
-        GOLDEN / "v1_walk.bvh",
-        "-o",
-        tmp_path / "b.mcz",
-        "--codec=diffma",
-        "--json",
-    ]
-    (row,) = json.loads(mocapress(*words).stdout)
-    errors = abs(mp.load(tmp_path / "b.mcz").values - mp.read(GOLDEN / "v1_walk.bvh").values)
+@pytest.mark.parametrize("ending", ["mcz", "diffma.json"])
+def test_what_a_lossy_codec_lost_is_measured_and_shown(tmp_path: Path, ending: str) -> None:
+    words = ["compress", GOLDEN / "v1_walk.bvh", "--codec=diffma", "-o"]
+    shown = mocapress(*words, tmp_path / f"a.{ending}")
+    (row,) = json.loads(mocapress(*words, tmp_path / f"b.{ending}", "--json").stdout)
+    decoded = mp.load(tmp_path / f"b.{ending}")
+    errors = abs(decoded.values - mp.read(GOLDEN / "v1_walk.bvh").values)
     assert row["largest_error"] == errors.max() > 0
     assert 0 < row["psnr"] < 100
     assert f"errors up to {errors.max():.3g}" in shown.stdout
+    (facts,) = json.loads(mocapress("info", tmp_path / f"b.{ending}", "--json").stdout)
+    assert facts["lossless"] is False

@@ -1,5 +1,8 @@
 """Files of every version stay readable: tests/golden/README.md."""
 
+import re
+import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -57,3 +60,17 @@ def test_there_is_a_file_of_everything() -> None:
     assert any(entry.own_header for one in opened for entry in one.mcz.entries)
     assert {one.mcz.closed for one in opened} == {True, False}
     assert all(len(one.mcz.of_stream[0]) >= 3 for one in opened if one.streams)
+
+
+@pytest.mark.skipif(shutil.which("file") is None, reason="needs file(1)")
+def test_file_knows_them(tmp_path: Path) -> None:
+    page = (GOLDEN.parents[1] / "docs/format.md").read_text()
+    (magic,) = re.findall(r"```\n(0\tstring.*?)```", page, re.DOTALL)
+    (tmp_path / "magic").write_text(magic)
+    for name, kind in (
+        ("v1_walk.bvh.mcz", "mocapress motion capture, version 1"),
+        ("v1_learner.mcm", "mocapress model, version 1"),
+    ):
+        command = ["file", "-b", "-m", str(tmp_path / "magic"), str(GOLDEN / name)]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        assert done.stdout.strip() == kind

@@ -9,7 +9,7 @@ from importlib import resources
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from mocapress.container import (
@@ -189,6 +189,7 @@ def column_tables(draw: st.DrawFn) -> tuple[Column, ...]:
     st.binary(max_size=30),
     st.sampled_from([b"", bytes(32)]),
 )
+@example(Skeleton((Joint("", -1, axis=(-0.0, 0.0, 0.0)),)), (), None, None, b"", b"")
 def test_heads_come_back(
     skeleton: Skeleton | None,
     columns: tuple[Column, ...],

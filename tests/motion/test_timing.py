@@ -127,3 +127,19 @@ def test_other_frames_need_another_way_than_other_values() -> None:
     with pytest.raises(ValueError, match="2 frames of values for a clip of 4"):
         clip.with_values(clip.values[::2])
     assert clip.with_frames(clip.values[::2], Fraction(1, 30)).frame_time == Fraction(1, 30)
+
+
+def test_one_frame_is_a_slice_too(samples: Path) -> None:
+    file = samples / "freebvh.bvh"
+    clip = mp.read(file)
+    with pytest.raises(TypeError, match=r"clip\[10:11\]"):
+        clip[10]  # type: ignore[index]
+    with pytest.raises(mp.ParameterError, match="slice"):
+        mp.load(mp.compress(file), frames=10)  # type: ignore[arg-type]
+
+
+def test_a_clip_is_shown_in_a_line(samples: Path) -> None:
+    shown = repr(mp.read(samples / "freebvh.bvh"))
+    assert "69 frames x 168 channels" in shown
+    assert "55 joints" in shown
+    assert len(shown) < 120

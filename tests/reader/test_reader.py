@@ -45,6 +45,7 @@ CASES = [
     ("leaps.amc", "exact:level=9,chunk=30"),
     ("couplings.bvh", "exact:level=3,chunk=32 with a model"),
     ("leaps.amc", "exact:level=9,chunk=30 with a model"),
+    ("numbers.bvh", "exact:chunk=16 with a model"),
 ]
 
 

@@ -92,6 +92,8 @@ def load_source(
     """Load a clip; see ``load``."""
     if errors not in (_RAISE, _SKIP):
         raise ParameterError("errors", expected="raise or skip", found=repr(errors))
+    if frames is not None and not isinstance(frames, slice):
+        raise ParameterError("frames", expected="a slice, e.g. slice(10, 11)", found=repr(frames))
     if source.kind == DIFFMA_JSON:
         clip = diffma_json.json_to_clip(source.data)
         return clip if frames is None else clip[frames]

@@ -63,7 +63,7 @@ class Opened:
     def warn_of_losses(self) -> None:
         """Warn of each part of the file that could not be read."""
         for where, error in self.damage:
-            what = f"{where} is lost ({error.what})"
+            what = f"lost: {where} ({error.what})"
             fact = CorruptError(what, file=self.source.name or None, offset=error.offset)
             self.source.warn("lost", fact)
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from mocapress import formats
+from mocapress.api.compressing import compress_clip
 from mocapress.container import diffma_json
 from mocapress.errors import UnsupportedError
 from mocapress.formats import Format
@@ -59,7 +60,7 @@ def write(
     fps: float | None = None,
     force: bool = False,
 ) -> None:
-    """Write a clip to a motion file, or as DiffMA JSON.
+    """Write a clip to a motion file, as ``.mcz``, or as DiffMA JSON.
 
     The clip is converted to what the format can hold. What belongs beside the file is written,
     too: the skeleton of an AMC as an ASF of the same name.
@@ -89,6 +90,9 @@ def write(
 
     """
     path = Path(path)
+    if to is None and path.name.lower().endswith(".mcz"):
+        write_whole(path, compress_clip(with_rate(clip, fps)).blob, force=force)
+        return
     if to is None and path.name.lower().endswith(JSON_SUFFIXES):
         clip = with_rate(clip, fps)
         write_whole(path, diffma_json.named(path.name, diffma_json.to_json(clip)), force=force)
@@ -96,7 +100,9 @@ def write(
     of = formats.by_id(to) if to else formats.by_name(path.name)
     if of is None:
         known = formats.listed(formats.writable())
-        raise UnsupportedError("no format for clips", expected=known, found=repr(path.suffix))
+        raise UnsupportedError(
+            "no format to write clips in", expected=known, found=repr(path.suffix)
+        )
     write_all(printed(with_rate(clip, fps, needed=of.timed), of, path), force=force)
 
 
@@ -114,7 +120,7 @@ def printed(clip: Clip, of: Format, path: Path) -> dict[Path, bytes]:
     """
     if of.write is None:
         known = formats.listed(formats.writable())
-        raise UnsupportedError("no format for clips", expected=known, found=of.name)
+        raise UnsupportedError("no format to write clips in", expected=known, found=of.name)
     (_, data), *companions = of.write(of.fit(clip)).items()
     files = {path: data}
     for suffix, contents in companions:

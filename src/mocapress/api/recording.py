@@ -74,7 +74,9 @@ class Recording:
         values = np.atleast_2d(np.array(rows, np.float64))
         if values.ndim != 2 or values.shape[1] != self._clip.channels:
             raise ParameterError(
-                "rows", expected=f"(n, {self._clip.channels})", found=str(values.shape)
+                "rows of another shape",
+                expected=f"(n, {self._clip.channels})",
+                found=str(values.shape),
             )
         if self._file is None:
             raise ParameterError("the recording is closed")
@@ -145,8 +147,14 @@ class Recording:
     def _put(self, data: bytes) -> None:
         assert self._file is not None
         left = memoryview(data)
-        while left:
-            left = left[os.write(self._file, left) :]
+        try:
+            while left:
+                left = left[os.write(self._file, left) :]
+        except OSError:
+            # What is half written would hide what follows; so the rows can be appended again.
+            os.ftruncate(self._file, self._mcz.length)
+            os.lseek(self._file, self._mcz.length, os.SEEK_SET)
+            raise
 
     def _sync(self) -> None:
         assert self._file is not None

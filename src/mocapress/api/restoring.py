@@ -72,9 +72,9 @@ def restore(source: Source, models: Sequence[Place] = (), *, salvage: bool = Fal
         if opened.damage:
             raise CorruptError("the section with the file's layout is damaged")
         raise UnsupportedError(
-            "there is no original file in this recording",
+            "there is no original file: this one was recorded, or made of a clip",
             file=source.name or None,
-            expected="mocapress convert, or load and write",
+            expected="mp.load or, if it has a skeleton, mocapress convert",
         )
     data = contents(opened, original)
     opened.warn_of_losses()

@@ -12,6 +12,7 @@ from mocapress.cli.options import Asf, Debug, Force, Inputs, Jobs, Json, Output
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
     from mocapress.codecs import Codec, Model
+    from mocapress.codecs.loss import Loss
 
 
 class Packed(StrEnum):
@@ -36,7 +37,8 @@ def compress(
         str | None,
         typer.Option(
             "--codec",
-            help="Codec, e.g. diffma:bound=4. By default a lossless one; diffma for JSON.",
+            help="Codec, e.g. exact:level=9 or diffma:bound=4. By default exact, which is "
+            "lossless; diffma for JSON.",
         ),
     ] = None,
     level: Annotated[
@@ -89,14 +91,16 @@ def compress(
     from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
     from mocapress.container import diffma_json
     from mocapress.formats import formats, suffixes
+    from mocapress.source import JSON_SUFFIXES
 
     learned = open_model(model) if model else None
     to = to or _kind_of(output)
     refuse_other_kinds(output, _ENDINGS[to], known_endings())
     made, notes = _codec(codec, to, level, learned, target_psnr), _notes(note or [], to)
     kinds = [of for of in formats() if of.split or (of.read_skeleton and made.lossless)]
+    endings = suffixes(kinds)
     files = plan(
-        find(inputs, suffixes(kinds)),
+        find(inputs, endings),
         output,
         partial(_compressed_name, to=to),
         force=force,
@@ -104,6 +108,7 @@ def compress(
         text=to is Packed.JSON,
         reads=[asf, model],
     )
+    _say_what_is_left_out(inputs, (*endings, *_ENDINGS[Packed.MCZ], *JSON_SUFFIXES))
 
     def work(job: "Job") -> dict[str, Any]:
         assert job.target is not None
@@ -113,12 +118,14 @@ def compress(
             compressed = api.compress_source(
                 source, made, asf_path=asf, embed_asf=embed_asf, model=learned, notes=notes
             )
-            blob, loss = compressed.blob, compressed.loss
-            facts["largest_error"] = loss.most if loss else None
-            facts["psnr"] = loss.psnr if loss and isfinite(loss.psnr) else None
+            blob = compressed.blob
+            loss: Loss | None = compressed.loss
             facts["warning"] = compressed.warning
         else:
-            blob = diffma_json.named(to, diffma_json.file_to_json(source, made, asf_path=asf))
+            text, loss = diffma_json.file_to_json(source, made, asf_path=asf)
+            blob = diffma_json.named(to, text)
+        facts["largest_error"] = loss.most if loss else None
+        facts["psnr"] = loss.psnr if loss and isfinite(loss.psnr) else None
         job.outputs[job.target] = blob
         return {
             "output": str(job.target),
@@ -176,6 +183,20 @@ def _notes(texts: list[str], to: Packed) -> dict[str, str]:
     if notes and to is not Packed.MCZ:
         usage("--note: only a .mcz keeps notes")
     return notes
+
+
+def _say_what_is_left_out(inputs: list[Path], known: tuple[str, ...]) -> None:
+    """Count files in folders that are not compressed, so that nobody deletes them by mistake."""
+    from os import walk
+
+    from mocapress.cli.report import say
+
+    for folder in (path for path in inputs if path.is_dir()):
+        files = (name for _, _, names in walk(folder) for name in names)
+        others = [name for name in files if not name.lower().endswith(known)]
+        if others:
+            more = f" and {len(others) - 1} more" if len(others) > 1 else ""
+            say(f"{folder}: not motion, left out: {others[0]}{more}")
 
 
 def _compressed_name(source: Path, to: Packed) -> Path:

@@ -36,7 +36,8 @@ def decompress(
     from mocapress.cli.models import open_models, places_for
     from mocapress.cli.sizes import show_sizes, show_total
     from mocapress.cli.targets import plan
-    from mocapress.source import JSON_SUFFIXES
+    from mocapress.errors import CorruptError
+    from mocapress.source import JSON_SUFFIXES, MCZ
 
     given = open_models(models or [])
     files = plan(
@@ -51,7 +52,12 @@ def decompress(
     def work(job: "Job") -> dict[str, Any]:
         assert job.target is not None
         source = job.opened()
-        restored = api.restore(source, places_for(job, given), salvage=salvage)
+        try:
+            restored = api.restore(source, places_for(job, given), salvage=salvage)
+        except CorruptError as error:
+            if not salvage and source.kind == MCZ:
+                error.what += " (--salvage restores what is left)"
+            raise
         job.outputs[job.target] = restored.data
         if with_asf and job.target != STREAM:
             for companion in restored.companions:
@@ -70,7 +76,8 @@ def _original_name(source: Path) -> Path:
     from mocapress.errors import MocapressError, ParameterError
 
     if source.suffix.lower() == ".mcz":
-        return source.with_name(source.name[:-4])
+        named = source.with_name(source.name[:-4])
+        return named if named.suffix else named.with_suffix(_original_suffix(source))
     stem = diffma_json.stem(source.name)
     if stem == source.name:
         raise ParameterError(
@@ -81,3 +88,19 @@ def _original_name(source: Path) -> Path:
     except MocapressError as error:
         error.file = str(source)
         raise
+
+
+def _original_suffix(packed: Path) -> str:
+    """Give the suffix of the original's name, if the file can be read that far and knows it."""
+    from mocapress.container import open_mcz
+    from mocapress.errors import MocapressError
+    from mocapress.source import Source
+
+    if not packed.is_file():  # a pipe can be read only once
+        return ""
+    try:
+        original = open_mcz(Source(packed), salvage=True).original
+    except (MocapressError, OSError):
+        return ""
+    suffix = Path(original.name).suffix if original else ""
+    return suffix if suffix[1:].isalnum() else ""

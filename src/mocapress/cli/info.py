@@ -46,13 +46,20 @@ def info(
 def _show(job: "Job") -> None:
     from rich.console import Console
     from rich.table import Table
+    from rich.text import Text  # names and notes are text, never markup
 
-    table = Table(title=str(job.source), show_header=False, title_justify="left")
+    table = Table(title=Text(str(job.source)), show_header=False, title_justify="left")
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold")  # digests are to be read whole
     for key, value in job.result.items():
         if value is not None and key != "warning":
-            table.add_row(key.replace("_", " "), _text(value))
+            table.add_row(key.replace("_", " "), Text(_text(value)))
     Console().print(table)
 
 
 def _text(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, dict):
+        return "\n".join(f"{key}: {part}" for key, part in value.items())
     return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -31,7 +31,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print results as JSON.")]
 Asf = Annotated[
     Path | None,
     typer.Option(
-        "--asf", help="Skeleton of the AMC files; by default the ASF beside each.", metavar="F"
+        "--asf", help="Skeleton of the AMC files; by default the ASF beside each.", metavar="FILE"
     ),
 ]
 Models = Annotated[

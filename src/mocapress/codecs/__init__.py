@@ -219,4 +219,5 @@ def _parse(kind: Any, text: str, where: str) -> Any:
     try:
         return kind(text)
     except ValueError as error:
-        raise ParameterError(where, expected=str(kind.__name__), found=repr(text)) from error
+        expected = "a number" if kind is float else "a whole number"
+        raise ParameterError(where, expected=expected, found=repr(text)) from error

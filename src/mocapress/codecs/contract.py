@@ -3,7 +3,7 @@
 import hashlib
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from math import inf
 from types import MappingProxyType
@@ -93,7 +93,7 @@ class Model:
 
     codec: str
     """Id of the codec."""
-    payload: bytes
+    payload: bytes = field(repr=False)
 
     @property
     def digest(self) -> bytes:

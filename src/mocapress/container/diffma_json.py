@@ -10,6 +10,7 @@ from mocapress import codecs
 from mocapress.codecs import Codec
 from mocapress.codecs.diffma.document import Document, read_document
 from mocapress.codecs.fallback import naming_faults
+from mocapress.codecs.loss import Loss
 from mocapress.container.columns import Columns, bones_of, read_columns, write_columns
 from mocapress.container.limits import most_printed
 from mocapress.container.packing import pack, unpack
@@ -82,7 +83,7 @@ def to_json(
     made = diffma_codec(codec) if isinstance(codec, str) else codec
     if isinstance(source, Clip):
         return clip_to_json(source, made)
-    return file_to_json(Source(source), made, asf_path=asf_path)
+    return file_to_json(Source(source), made, asf_path=asf_path)[0]
 
 
 def diffma_codec(text: str) -> Codec:
@@ -93,8 +94,15 @@ def diffma_codec(text: str) -> Codec:
     return made
 
 
-def file_to_json(source: Source, codec: Codec, *, asf_path: str | Path | None = None) -> bytes:
+def file_to_json(
+    source: Source, codec: Codec, *, asf_path: str | Path | None = None
+) -> tuple[bytes, Loss]:
     """Code a motion file; what comes back of it, by ``json_to_file``, has its layout.
+
+    Returns
+    -------
+    tuple
+        JSON text, and what it has lost, measured from what it decodes to.
 
     Raises
     ------
@@ -105,7 +113,8 @@ def file_to_json(source: Source, codec: Codec, *, asf_path: str | Path | None = 
     clip, layout, problems = source.split(asf_path)
     source.accept(problems)
     source.warn_of_guess()
-    return clip_to_json(clip, codec, layout=_packed(layout, clip))
+    text = clip_to_json(clip, codec, layout=_packed(layout, clip))
+    return text, Loss.of(clip.values, json_to_clip(text).values)
 
 
 def clip_to_json(clip: Clip, codec: Codec, *, layout: bytes = b"") -> bytes:

@@ -9,7 +9,7 @@ from mocapress.errors import CorruptError
 from mocapress.records import Reader, Writer
 
 _STORED, _LZMA, _DEFLATE = range(3)
-_LEAST_LZMA, _MIXED, _FITTING = 2**10, 2**12, 8
+_LEAST_LZMA, _FITTING = 2**12, 8
 
 
 def pack(data: bytes) -> bytes:
@@ -19,9 +19,9 @@ def pack(data: bytes) -> bytes:
         deflate = zlib.compressobj(9, zlib.DEFLATED, -15, 9, zdict=_dictionary())
         candidates.append((_DEFLATE, deflate.compress(data) + deflate.flush()))
     # Where the dictionary fits, or for little data, LZMA never wins. Literal context 4 and no
-    # position bits suit text, the default suits binary data; small data is much of both.
+    # position bits suit text, the default suits binary data.
     if len(data) >= _LEAST_LZMA and len(candidates[-1][1]) * _FITTING > len(data):
-        for text in (True, False) if _MIXED < len(data) < 2**16 else (True,):
+        for text in (True, False) if len(data) < 2**16 else (True,):
             chain = _lzma_filter(len(data), text=text)
             candidates.append((_LZMA, lzma.compress(data, lzma.FORMAT_RAW, filters=[chain])))
     method, packed = min(candidates, key=lambda candidate: len(candidate[1]))

@@ -39,7 +39,7 @@ def read_magic(reader: Reader, magic: bytes, version: int, name: str) -> None:
     """
     found = bytes(reader.data[: len(magic)])
     if found != magic:
-        raise CorruptError(f"not an {name} file", offset=0, expected=magic.hex(), found=found.hex())
+        raise CorruptError(f"not a {name} file", offset=0, expected=magic.hex(), found=found.hex())
     reader.raw(len(magic))
     number = reader.raw(1)[0]
     if number != version:

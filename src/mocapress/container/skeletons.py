@@ -22,7 +22,8 @@ def write_skeleton(writer: Writer, skeleton: Skeleton | None) -> None:
     writer.integer(len(joints))
     if skeleton is None or not joints:
         return
-    axes = any((joint.axis, joint.axis_order) != _NO_AXIS for joint in joints)
+    # Compared as texts, in which -0.0 is another number than 0.0.
+    axes = any(str((joint.axis, joint.axis_order)) != str(_NO_AXIS) for joint in joints)
     limited = any(joint.limits for joint in joints)
     writer.integer(
         _FIXED * (skeleton.rotation == "fixed")

@@ -48,13 +48,19 @@ def detect(
 
     """
     columns = statistics.shape[0]
-    by_column = [[row[c] for row in texts] for c in range(columns)]
+    theirs = [text for row in texts for text in row[:columns]]
 
-    def misses(candidate: NumberFormat) -> list[int]:
-        return [_misses(printed(sample[:, c], candidate), by_column[c]) for c in range(columns)]
+    def misses(candidate: NumberFormat) -> NDArray[np.int64]:
+        """Count the numbers of each column that are written otherwise, (C,)."""
+        ours = printed(sample.ravel(), candidate)
+        if ours == theirs:
+            return np.zeros(columns, np.int64)
+        wrong = [b is not None and a != b for a, b in zip(ours, theirs, strict=True)]
+        counts: NDArray[np.int64] = np.array(wrong, np.int64).reshape(-1, columns).sum(axis=0)
+        return counts
 
     for candidate in _candidates(merged_statistics(statistics)):
-        if not any(misses(candidate)):
+        if not misses(candidate).any():
             return tuple(candidate for _ in range(columns))
     candidates = list(
         dict.fromkeys(
@@ -69,10 +75,6 @@ def detect(
         votes.update(np.flatnonzero(counts[:, c] == counts[:, c].min()).tolist())
     order = sorted(range(len(candidates)), key=lambda i: (-votes[i], i))
     return tuple(candidates[min(order, key=lambda i: counts[i, c])] for c in range(columns))
-
-
-def _misses(ours: list[bytes], theirs: list[bytes | None]) -> int:
-    return sum(b is not None and a != b for a, b in zip(ours, theirs, strict=True))
 
 
 def write_format(writer: Writer, f: NumberFormat) -> None:

@@ -16,6 +16,7 @@ NUMBER = 0x10
 MOST_FORMATS = 16
 _REFERENCE = re.compile(rb"(\x00.?|[\x01-\x08\x0b\x0c\x0e-\x1f])", re.DOTALL)
 _SPECIAL = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f]")
+_CONTROLS = bytes({*range(0x20)} - {0x09, 0x0A, 0x0D})
 _WORDS = {
     "tx": "Xposition",
     "ty": "Yposition",
@@ -74,6 +75,8 @@ def decimal_text(value: Decimal) -> str:
 
 def raw(text: bytes) -> bytes:
     """Give the pattern of a text that refers to nothing."""
+    if len(text.translate(None, _CONTROLS)) == len(text):
+        return text
     return _SPECIAL.sub(lambda found: b"\0" + found.group(), text)
 
 
@@ -139,25 +142,22 @@ class Header:
         out = [texts[0]]
         depth, joint, left = texts[0].count(b"{") - texts[0].count(b"}"), -1, self.most
         for code, text in zip(codes, texts[1:], strict=True):
-            if code == BREAK:
-                steps = max(max(depth, 0) - (text[:1] == b"}"), 0)
-                left -= len(indentation) * steps + len(line_break)
+            if code >= NUMBER or code == PASS:
+                out.append(next(numbers))
+                word = text
+            elif code == BREAK:
+                steps = depth - 1 if text[:1] == b"}" else depth
+                left -= len(line_break) + len(indentation) * steps if steps > 0 else len(line_break)
                 if left < 0:
                     raise CorruptError("layout: a longer header than may be")
-                word = line_break + indentation * steps
-            elif code >= NUMBER or code == PASS:
-                word = next(numbers)
+                word = line_break + indentation * steps + text
             else:
                 joint += code == NAME
-                word = self._word(code, joint)
+                word = self._word(code, joint) + text
             if word:
                 out.append(word)
                 if b"{" in word or b"}" in word:
                     depth += word.count(b"{") - word.count(b"}")
-            if text:
-                out.append(text)
-                if b"{" in text or b"}" in text:
-                    depth += text.count(b"{") - text.count(b"}")
         header = b"".join(out)
         if len(header) > self.most:
             raise CorruptError("layout: a longer header than may be")

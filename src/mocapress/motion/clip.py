@@ -73,6 +73,11 @@ class Stream:
         values.flags.writeable = False
         object.__setattr__(self, "values", values)
 
+    def __repr__(self) -> str:
+        """Say what it is in a line, without the numbers."""
+        time = "unknown" if self.frame_time is None else self.frame_time
+        return f"<Stream: {self.frames} frames x {self.channels} channels, frame time {time}>"
+
     @property
     def frames(self) -> int:
         """Number of frames, F."""
@@ -103,6 +108,12 @@ class Clip:
             msg = "a clip needs at least one stream"
             raise ValueError(msg)
         object.__setattr__(self, "streams", MappingProxyType(dict(self.streams)))
+
+    def __repr__(self) -> str:
+        """Say what it is in a line, without the numbers."""
+        streams = ", ".join(f"{name}: {stream!r}" for name, stream in self.streams.items())
+        joints = f"{len(self.skeleton.joints)} joints" if self.skeleton else "no skeleton"
+        return f"<Clip {self.name!r}: {streams}, {joints}>"
 
     @classmethod
     def of(
@@ -162,7 +173,18 @@ class Clip:
 
         The frame time follows the step: every second frame lasts twice as long. With a step below
         zero the clip runs backwards. All streams have to share their frames.
+
+        Raises
+        ------
+        TypeError
+            When it is no slice. One frame is ``clip[a : a + 1]``, or ``clip.values[a]``.
+        ValueError
+            When the streams have different frames.
+
         """
+        if not isinstance(frames, slice):
+            msg = f"a clip takes a slice, such as clip[10:11], not {frames!r}"
+            raise TypeError(msg)
         step = abs(range(self.frames)[frames].step)
         if any(
             (stream.frames, stream.frame_time) != (self.frames, self.frame_time)

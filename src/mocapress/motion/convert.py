@@ -42,7 +42,10 @@ def with_rate(clip: Clip, fps: float | None = None, *, needed: bool = False) -> 
         return clip.with_frame_time(1 / Fraction(str(fps)))
     if clip.frame_time or not needed:
         return clip
-    what = f"the frame rate is not known; {DEFAULT_FPS} frames per second are assumed"
+    what = (
+        f"the sampling rate is not known; {DEFAULT_FPS} frames per second are assumed "
+        "(--fps or fps=... sets another)"
+    )
     warnings.warn(MotionWarning("assumed-rate", MocapressError(what)), stacklevel=3)
     return clip.with_frame_time(Fraction(1, DEFAULT_FPS))
 

@@ -40,3 +40,17 @@ class NumberFormat:
     """Whether the zero before the point is left out: ``.5``."""
     upper: bool = False
     """Whether the exponent is written ``E``."""
+
+    def __str__(self) -> str:
+        """Say in words how the numbers look, without the finer points."""
+        return _WORDS[self.kind].format(self.digits)
+
+
+_WORDS = {
+    NumberKind.GENERAL: "{} significant digits",
+    NumberKind.FIXED: "{} decimals",
+    NumberKind.TRIMMED: "up to {} decimals",
+    NumberKind.SCIENTIFIC: "{} decimals and an exponent",
+    NumberKind.SHORTEST: "shortest float64",
+    NumberKind.SHORTEST32: "shortest float32",
+}

@@ -137,18 +137,22 @@ def _turns(values: NDArray[np.float64], roles: Sequence[Role]) -> Iterator[int]:
             yield 0
 
 
-def _exponents(values: NDArray[np.float64], roles: Sequence[Role]) -> Iterator[int]:
+def _exponents(values: NDArray[np.float64], roles: Sequence[Role]) -> list[int]:
     """Give the powers of two, in whole steps of 2^8, that make the usual moves about 1/8."""
     every = len(values) // _MOVES + 1
     with np.errstate(invalid="ignore", over="ignore"):
         moves = np.abs(values[1::every] - values[:-1:every])
     moving = np.isfinite(moves) & (moves > 0)
-    for column, role in enumerate(roles):
-        found = moves[moving[:, column], column]
-        if role is not Role.PREDICTED or len(found) == 0:
-            yield 0
-            continue
-        with np.errstate(over="ignore"):
-            usual = np.frexp(np.median(found))[1]
-        exponent = EXPONENT_STEP * round((_USUAL_MOVE - int(usual)) / EXPONENT_STEP)
-        yield max(-MOST_EXPONENT, min(MOST_EXPONENT, exponent))
+    count = moving.sum(axis=0)
+    known = (count > 0) & np.array([role is Role.PREDICTED for role in roles], bool)
+    if not known.any():
+        return [0] * len(roles)
+    # The median of those that move: they stand before the others.
+    ordered = np.sort(np.where(moving, moves, np.inf)[:, known], axis=0)
+    middles = np.stack([(count[known] - 1) // 2, count[known] // 2])
+    with np.errstate(over="ignore"):
+        usual = np.frexp(np.take_along_axis(ordered, middles, axis=0).mean(axis=0))[1]
+    steps = np.rint((_USUAL_MOVE - usual) / EXPONENT_STEP).astype(int) * EXPONENT_STEP
+    exponents = np.zeros(len(roles), int)
+    exponents[known] = np.clip(steps, -MOST_EXPONENT, MOST_EXPONENT)
+    return [int(exponent) for exponent in exponents]

@@ -13,6 +13,7 @@ Learned = tuple[list[float], list[list[float]]]
 """As the compiled coder has it: by all columns, and by each of the coded columns."""
 
 _MANTISSA = np.uint32(0xFFFFF000)
+_LARGEST = 1e29
 
 
 @dataclass(slots=True)
@@ -62,8 +63,15 @@ def start_of(model: Model | None) -> Start:
 
 
 def _write(writer: Writer, numbers: Sequence[float]) -> None:
-    bits = np.array(numbers, dtype="<f4").view("<u4")
+    """Append a list; what was learned from numbers that no motion has may be of no use."""
+    with np.errstate(over="ignore"):
+        learned = np.array(numbers, dtype="<f4")
+    bits = learned.view("<u4") if _usable(learned) else np.empty(0, "<u4")
     writer.bytes((bits & _MANTISSA).tobytes())
+
+
+def _usable(numbers: NDArray[np.float32]) -> bool:
+    return bool((np.abs(numbers) <= _LARGEST).all())
 
 
 def _read(reader: Reader) -> list[float]:
@@ -71,6 +79,6 @@ def _read(reader: Reader) -> list[float]:
     if len(data) % 4:
         raise reader.fail("a list of numbers cut off")
     numbers: NDArray[np.float32] = np.frombuffer(data, dtype="<f4")
-    if not np.isfinite(numbers).all() or (np.abs(numbers) > 1e29).any():
+    if not _usable(numbers):
         raise reader.fail("numbers that were not learned")
     return [float(number) for number in numbers]
