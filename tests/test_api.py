@@ -40,6 +40,17 @@ BROKEN = {
         b"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\n"
         b"Frames: 1\nFrame Time: 0.1\ninf\n"
     ),
+    "BVH of a frame time without end": (
+        b"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\n"
+        b"Frames: 1\nFrame Time: 1e100000000\n1\n"
+    ),
+    "BVH of a frame time of many digits": (
+        b"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\n"
+        b"Frames: 1\nFrame Time: 0." + 5000 * b"1" + b"\n1\n"
+    ),
+    "BVH of more channels than can be counted": (
+        b"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS " + 5000 * b"1" + b" Xrotation\n}\n"
+    ),
     "deep nesting": b"HIERARCHY\nROOT a\n{\n" + b"JOINT b\n{\n" * 100_000,
 }
 
@@ -55,6 +66,28 @@ def test_broken_files_are_errors_to_read_and_still_compress(name: str, tmp_path:
     made = compress_source(Source(BROKEN[name], str(file)))
     assert made.warning
     assert mp.decompress(made.blob) == BROKEN[name]
+
+
+def test_counts_may_have_zeros_before_them() -> None:
+    bvh = (
+        b"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS %s1 Xrotation\n}\nMOTION\n"
+        b"Frames: %s1\nFrame Time: 0.1\n1\n"
+    )
+    assert mp.read(bvh % (5000 * b"0", 5000 * b"0")).frames == 1
+
+
+@pytest.mark.parametrize("stated", [b"0", b"-1", b"inf", b"nan", b"1e999"])
+def test_a_unit_of_length_is_a_number_above_0(samples: Path, stated: bytes) -> None:
+    asf = (samples / "cmu_01_01.asf").read_bytes()
+    assert asf.count(b"length 0.45") == 1
+    with pytest.raises(mp.FormatError, match="unit of length; expected a number above 0"):
+        mp.read(asf.replace(b"length 0.45", b"length " + stated))
+
+
+def test_an_amc_without_frames_is_not_written(samples: Path, tmp_path: Path) -> None:
+    with pytest.raises(mp.UnsupportedError, match="an AMC needs frames"):
+        mp.write(mp.read(samples / "cmu_01_01.asf"), tmp_path / "a.amc")
+    assert not list(tmp_path.iterdir())
 
 
 def test_errors_say_where_and_what(tmp_path: Path) -> None:

@@ -1,18 +1,18 @@
 """AMC: the motion of an Acclaim skeleton, one line per bone and frame."""
 
 import re
-from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.errors import FormatError
+from mocapress.errors import FormatError, UnsupportedError
 from mocapress.formats.asf import asf_words, format_asf
 from mocapress.formats.contract import Format, Split, split_of
 from mocapress.formats.joint_names import decoded, words
 from mocapress.formats.layout import Slot, build, print_clip
+from mocapress.formats.number_formats import stated
 from mocapress.formats.problems import Problem
 from mocapress.formats.rows import (
     Body,
@@ -52,6 +52,8 @@ def fit(clip: Clip) -> Clip:
 
 def write(clip: Clip) -> dict[str, bytes]:
     """Print a clip, and its skeleton as the ASF beside it."""
+    if not clip.values.size:
+        raise UnsupportedError("an AMC needs frames", expected="1 frame of 1 channel at least")
     radians = any(column.unit == "rad" for column in clip.columns)
     header = format_header(clip.frame_time, "rad" if radians else "deg") + b"\n"
     literals = [b""]
@@ -165,16 +167,11 @@ def clip_of(
 
 def frame_time_of(header: bytes) -> Fraction | None:
     """Give the seconds per frame that a header states, if it does and they are a time."""
-    stated = _RATE.search(header)
-    if stated is None:
+    found = _RATE.search(header)
+    if found is None:
         return None
-    try:
-        rate = Decimal(stated[1].decode("latin-1"))
-    except InvalidOperation:
-        return None
-    return (
-        1 / Fraction(rate) if rate.is_finite() and abs(rate.adjusted()) < 18 and rate > 0 else None
-    )
+    rate = stated(found[1])
+    return 1 / Fraction(rate) if rate else None
 
 
 def format_header(frame_time: FrameTime, angle_unit: str) -> bytes:

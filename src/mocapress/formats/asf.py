@@ -92,10 +92,7 @@ class _Parser:
         angle = units.get("angle", "deg").lower()
         if angle not in ("deg", "rad"):
             self.fail(1, "unit of angles", "deg or rad", repr(angle))
-        try:
-            length = float(units["length"]) if "length" in units else None
-        except ValueError:
-            self.fail(1, "unit of length", "a number", repr(units["length"]))
+        length = self._unit_of_length(units["length"]) if "length" in units else None
         bones[0].name = self.root_name
         joints = _joints(bones)
         return Skeleton(joints, "fixed", angle, length, name, {"mass": units.get("mass", "")})
@@ -188,6 +185,15 @@ class _Parser:
             self.fail(line.number, line.key, "three numbers", line.text)
         x, y, z = (self._number(line, word) for word in line.words[:3])
         return x, y, z
+
+    def _unit_of_length(self, text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = 0.0
+        if not (isfinite(value) and value > 0):
+            self.fail(1, "unit of length", "a number above 0", repr(text))
+        return value
 
     def _number(self, line: _Line, word: str) -> float:
         try:

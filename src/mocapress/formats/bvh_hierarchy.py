@@ -2,12 +2,13 @@
 
 import re
 from dataclasses import dataclass
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 from math import isfinite
 from typing import NoReturn
 
 from mocapress.errors import FormatError
 from mocapress.formats.joint_names import decoded, escaped
+from mocapress.formats.number_formats import stated
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 
 _KINDS = {
@@ -158,7 +159,8 @@ class _Parser:
 
     def _channels(self, at: int, words: list[str]) -> None:
         kinds = tuple(_KINDS.get(word.lower(), "") for word in words[1:])
-        if not words or not words[0].isdecimal() or int(words[0]) != len(kinds) or "" in kinds:
+        told = words[0].lstrip("0") or "0" if words else ""
+        if told != str(len(kinds)) or "" in kinds:
             self.fail(at, "channels", "their number, and as many names like Xrotation")
         if not self.stack or self.stack[-1].end_site or len(set(kinds)) < len(kinds):
             self.fail(at, "channels", "each at most once, inside of a joint")
@@ -182,19 +184,17 @@ class _Parser:
 
     def _motion(self, position: int) -> Hierarchy:
         frames = _FRAMES.match(self.data, position)
-        if frames is None or not frames[1].isdigit() or int(frames[1][:20]) > 2**40:
+        told = frames[1].lstrip(b"0") or b"0" if frames else b""
+        if frames is None or not told.isdigit() or int(told[:20]) > 2**40:
             self.fail(position, "number of frames", "Frames: and their number")
         frame_time = _FRAME_TIME.match(self.data, frames.end())
         if frame_time is None:
             self.fail(frames.end(), "frame time", "Frame Time: and seconds")
-        try:
-            seconds = Decimal(frame_time[1].decode("latin-1"))
-        except InvalidOperation:
-            seconds = Decimal("NaN")
-        if not seconds.is_finite() or seconds < 0:
+        seconds = stated(frame_time[1])
+        if seconds is None:
             self.fail(frames.end(), "frame time", "seconds")
         skeleton = Skeleton(tuple(self.joints), "moving")
-        return Hierarchy(skeleton, int(frames[1]), seconds, frame_time.end())
+        return Hierarchy(skeleton, int(told), seconds, frame_time.end())
 
 
 def format_hierarchy(skeleton: Skeleton, frames: int, frame_time: Decimal) -> bytes:

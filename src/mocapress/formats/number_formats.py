@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
+from decimal import Decimal, InvalidOperation
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,8 @@ SHORTEST = NumberFormat(NumberKind.SHORTEST)
 """How numbers are printed that were never text."""
 _MOST_DIGITS = 40
 _MOST_EXPONENT_DIGITS = 8
+# Of a time or a rate that a header states: digits, and digits before or behind the point.
+_STATED_DIGITS, _STATED_SIZE = 100, 18
 
 
 def packed(formats: tuple[NumberFormat, ...]) -> NDArray[np.uint8]:
@@ -113,6 +116,18 @@ def printed(
         2**62,
     )
     return text.split(b"\n")[:-1]
+
+
+def stated(text: bytes) -> Decimal | None:
+    """Read a time or a rate that a header states; None where it is none, or an absurd one."""
+    try:
+        number = Decimal(text.decode("latin-1"))
+    except InvalidOperation:
+        return None
+    # Whatever is done with others would take time and memory without end.
+    usual = number.is_finite() and abs(number.adjusted()) < _STATED_SIZE
+    few = len(number.as_tuple().digits) <= _STATED_DIGITS
+    return number if usual and few and number >= 0 else None
 
 
 def _candidates(row: NDArray[np.uint8]) -> list[NumberFormat]:
