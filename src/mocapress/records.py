@@ -12,7 +12,7 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.errors import CorruptError
+from mocapress.errors import CorruptError, UnsupportedError
 
 _MOST_DECIMALS = 15
 
@@ -41,7 +41,10 @@ class Writer:
 
     def text(self, value: str) -> None:
         """Append a text in UTF-8."""
-        self.bytes(value.encode())
+        try:
+            self.bytes(value.encode())
+        except UnicodeEncodeError:
+            raise UnsupportedError("a text that is not Unicode", found=ascii(value)) from None
 
     def double(self, value: float) -> None:
         """Append a float64."""

@@ -1,7 +1,9 @@
 """The command line as scripts and people use it."""
 
+import dataclasses
 import hashlib
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -12,6 +14,7 @@ from running import mocapress, process
 
 import mocapress as mp
 
+SAMPLES = Path(__file__).parents[2] / "samples"
 GOLDEN = Path(__file__).parents[1] / "golden"
 AMC = b":FULLY-SPECIFIED\n:DEGREES\n" + b"".join(
     b"%d\nroot %d.5 2 3 4 5 6\nhip 1.25 -0.125\n" % (i, i) for i in range(1, 9)
@@ -379,3 +382,16 @@ def test_what_a_lossy_codec_lost_is_measured_and_shown(tmp_path: Path, ending: s
     assert f"errors up to {errors.max():.3g}" in shown.stdout
     (facts,) = json.loads(mocapress("info", tmp_path / f"b.{ending}", "--json").stdout)
     assert facts["lossless"] is False
+
+
+def test_names_that_are_no_utf_8(walk: Path) -> None:
+    odd = walk.with_name(os.fsdecode(b"w\xff.bvh"))
+    odd.write_bytes((SAMPLES / "mocapbank.bvh").read_bytes())
+    page = walk.with_name("page.html")
+    assert process("view", odd, "--export", page).returncode == 0
+    assert "w\ufffd.bvh" in page.read_text(encoding="utf-8")
+    clip = dataclasses.replace(mp.read(odd), name=odd.name, metadata={"skeleton": odd.name})
+    assert mp.load(mp.compress(clip)).metadata["skeleton"] == "w\ufffd.bvh"
+    done = process("compress", walk, "--note", os.fsdecode(b"actor=\xff"))
+    assert done.returncode == 1
+    assert b"a text that is not Unicode" in done.stderr

@@ -143,3 +143,11 @@ def test_a_clip_is_shown_in_a_line(samples: Path) -> None:
     assert "69 frames x 168 channels" in shown
     assert "55 joints" in shown
     assert len(shown) < 120
+
+
+@pytest.mark.parametrize("suffix", [".amc", ".bvh"])
+@pytest.mark.parametrize("fps", [1e300, 1e-300])
+def test_an_absurd_rate_is_not_written(tmp_path: Path, suffix: str, fps: float) -> None:
+    with pytest.raises(mp.UnsupportedError, match="frame time"):
+        mp.write(clip_of(None), tmp_path / f"a{suffix}", fps=fps)
+    assert not list(tmp_path.iterdir())

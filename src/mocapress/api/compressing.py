@@ -149,7 +149,8 @@ def compress_clip(
         )
         heads.append(head)
         chunks += of_stream
-    said = {**({"name": clip.name} if clip.name else {}), **clip.metadata, **(notes or {})}
+    facts = {**({"name": clip.name} if clip.name else {}), **clip.metadata}
+    said = {key: _readable(fact) for key, fact in facts.items()} | dict(notes or {})
     parts: list[bytes] = []
     writer = MczWriter(parts.append)
     writer.head(Head(tuple(heads), skeleton))
@@ -274,8 +275,13 @@ def motion_file(
 
 
 def _name(path: str) -> str:
-    """Give a file's name without folders; what is no UTF-8 in it is replaced."""
-    return PurePath(path).name.encode(errors="surrogateescape").decode(errors="replace")
+    """Give a file's name without folders."""
+    return _readable(PurePath(path).name)
+
+
+def _readable(name: str) -> str:
+    """Replace what is no UTF-8 in the name of a file."""
+    return name.encode(errors="surrogateescape").decode(errors="replace")
 
 
 def _companions(source: Source) -> list[Companion]:

@@ -15,7 +15,7 @@ from mocapress import codecs
 from mocapress.api.encoding import coded_chunks, stored_skeleton, stream_head
 from mocapress.api.opening import decoded
 from mocapress.codecs import DEFAULT_CODEC, Codec
-from mocapress.container import Head, MczWriter
+from mocapress.container import Head, MczWriter, is_storable_time
 from mocapress.container.limits import most_values
 from mocapress.errors import ParameterError, UnsupportedError, VerificationError
 from mocapress.motion import Clip, Column, Skeleton, Stream
@@ -42,6 +42,9 @@ class Recording:
         self._held = 0
         self.frames = 0
         """Frames that are in the file."""
+        self._head = stream_head(self._name, clip.main, codec, frames=None)
+        # What cannot be stored is refused before there is a file.
+        self._begin(MczWriter(bytearray().extend), notes)
         try:
             self._file: int | None = os.open(
                 path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666
@@ -49,11 +52,13 @@ class Recording:
         except FileExistsError:
             raise ExistsError("file exists; a recording needs a new one", file=str(path)) from None
         self._mcz = MczWriter(self._put)
-        self._head = stream_head(self._name, clip.main, codec, frames=None)
-        self._mcz.head(Head((self._head,), stored_skeleton(clip)))
-        if notes:
-            self._mcz.notes(notes)
+        self._begin(self._mcz, notes)
         self._sync()
+
+    def _begin(self, mcz: MczWriter, notes: Mapping[str, str]) -> None:
+        mcz.head(Head((self._head,), stored_skeleton(self._clip)))
+        if notes:
+            mcz.notes(notes)
 
     def append(self, rows: ArrayLike) -> None:
         """Add frames; every chunk that they complete is on the disk when this returns.
@@ -201,6 +206,10 @@ def writer(
     ------
     ExistsError
         When the file exists.
+    ParameterError
+        When there is no such codec, or the rate is no number above 0.
+    UnsupportedError
+        When a file cannot hold a name or note.
     OSError
         When it cannot be written.
 
@@ -218,10 +227,13 @@ def _frame_time(rate: float | Fraction | Decimal | None) -> Fraction | None:
     if rate is None:
         return None
     try:
-        return 1 / max(Fraction(str(rate) if isinstance(rate, float) else rate), Fraction(0))
+        time = 1 / max(Fraction(str(rate) if isinstance(rate, float) else rate), Fraction(0))
     except (ValueError, OverflowError, ZeroDivisionError):
         found = str(rate)
         raise ParameterError("rate", expected="a number above 0", found=found) from None
+    if not is_storable_time(time):
+        raise ParameterError("rate", expected="a number of up to 448 bits", found=str(rate))
+    return time
 
 
 def _column(name: str, joints: dict[str, int]) -> Column:

@@ -62,7 +62,10 @@ def view(
                 clips.append(embed.file(path, asf_path=asf, max_error=stated, strict=not lenient))
             for warning in kept():
                 say(f"warning: {warning}")
-        document = page.document(clips, " · ".join(path.name for path in inputs) or "mocapress")
+        title = " · ".join(path.name for path in inputs) or "mocapress"
+        # Names of files need not be UTF-8, a page is.
+        title = title.encode(errors="surrogateescape").decode(errors="replace")
+        document = page.document(clips, title)
         if export:
             name = str(export)
             write_whole(export, document.encode(), force=force)

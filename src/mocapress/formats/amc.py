@@ -12,7 +12,7 @@ from mocapress.formats.asf import asf_words, format_asf
 from mocapress.formats.contract import Format, Split, split_of
 from mocapress.formats.joint_names import decoded, words
 from mocapress.formats.layout import Slot, build, print_clip
-from mocapress.formats.number_formats import stated
+from mocapress.formats.number_formats import stated, to_state
 from mocapress.formats.problems import Problem
 from mocapress.formats.rows import (
     Body,
@@ -178,7 +178,7 @@ def format_header(frame_time: FrameTime, angle_unit: str) -> bytes:
     """Print what stands before the frames."""
     lines = [":FULLY-SPECIFIED", ":RADIANS" if angle_unit == "rad" else ":DEGREES"]
     if frame_time:
-        lines.append(f":SAMPLES-PER-SECOND {short_decimal(1 / Fraction(frame_time)):f}")
+        lines.append(f":SAMPLES-PER-SECOND {to_state(short_decimal(1 / Fraction(frame_time)))}")
     return "\n".join(lines).encode()
 
 

@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from mocapress.errors import FormatError
 from mocapress.formats.joint_names import decoded, escaped
-from mocapress.formats.number_formats import stated
+from mocapress.formats.number_formats import stated, to_state
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 
 _KINDS = {
@@ -227,7 +227,7 @@ def format_hierarchy(skeleton: Skeleton, frames: int, frame_time: Decimal) -> by
             ]
         pending.append((-1, depth))
         pending += [(child, depth + 1) for child in reversed(children.get(i, []))]
-    lines += ["MOTION", f"Frames: {frames}", f"Frame Time: {frame_time:f}", ""]
+    lines += ["MOTION", f"Frames: {frames}", f"Frame Time: {to_state(frame_time)}", ""]
     return "\n".join(lines).encode()
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
+from mocapress.errors import UnsupportedError
 from mocapress.formats.rows import merged_statistics
 from mocapress.motion.number_format import NumberFormat, NumberKind
 from mocapress.records import Reader, Writer
@@ -124,10 +125,29 @@ def stated(text: bytes) -> Decimal | None:
         number = Decimal(text.decode("latin-1"))
     except InvalidOperation:
         return None
+    return number if _is_usual(number) else None
+
+
+def to_state(number: Decimal) -> str:
+    """Print a time or a rate for a header.
+
+    Raises
+    ------
+    UnsupportedError
+        When it is absurd, so that it would not be read again.
+
+    """
+    if not _is_usual(number):
+        raise UnsupportedError(
+            "frame time", expected=f"1e-{_STATED_SIZE} to 1e{_STATED_SIZE}", found=f"{number:.6g}"
+        )
+    return f"{number:f}"
+
+
+def _is_usual(number: Decimal) -> bool:
     # Whatever is done with others would take time and memory without end.
     usual = number.is_finite() and abs(number.adjusted()) < _STATED_SIZE
-    few = len(number.as_tuple().digits) <= _STATED_DIGITS
-    return number if usual and few and number >= 0 else None
+    return usual and len(number.as_tuple().digits) <= _STATED_DIGITS and number >= 0
 
 
 def _candidates(row: NDArray[np.uint8]) -> list[NumberFormat]:

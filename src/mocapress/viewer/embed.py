@@ -95,7 +95,7 @@ def approximate(clip: Clip, max_error: float, name: str = "") -> dict[str, Any]:
 
 def _named(clip: Clip, name: str) -> dict[str, Any]:
     # An AMC can be in radians whose skeleton is in degrees.
-    unit = next((column.unit for column in clip.columns if column.kind[0] == "r"), "")
+    unit = next((column.unit for column in clip.columns if column.kind[:1] == "r"), "")
     made = {"name": name or clip.name or "clip"}
     return made | {"angleUnit": unit} if unit in ("deg", "rad") else made
 
