@@ -115,6 +115,7 @@ def test_the_unit_is_suggested(samples: Path) -> None:
 
 
 @pytest.mark.corpus
+@pytest.mark.filterwarnings("ignore:.*the only one in the folder")
 def test_the_whole_corpus_keeps_its_places(corpus_clips: list[Path], tmp_path: Path) -> None:
     for number, path in enumerate(corpus_clips):
         clip = convert.with_rate(mp.read(path), 120)

@@ -49,6 +49,7 @@ def test_javascript_decodes_the_same_bits(samples: Path, tmp_path: Path) -> None
 
 
 @pytest.mark.corpus
+@pytest.mark.filterwarnings("ignore:.*the only one in the folder")
 def test_javascript_decodes_the_same_bits_of_the_corpus(
     corpus_clips: list[Path], tmp_path: Path
 ) -> None:
