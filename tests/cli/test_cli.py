@@ -395,3 +395,15 @@ def test_names_that_are_no_utf_8(walk: Path) -> None:
     done = process("compress", walk, "--note", os.fsdecode(b"actor=\xff"))
     assert done.returncode == 1
     assert b"a text that is not Unicode" in done.stderr
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("info", "LONG"), ("compress", "WALK", "-o", "LONG"), ("verify", "--model", "LONG", "WALK")],
+    ids=str,
+)
+def test_a_path_that_cannot_be_looked_at_is_no_defect(walk: Path, words: tuple[str, ...]) -> None:
+    paths = {"LONG": walk.with_name(300 * "n"), "WALK": walk}
+    done = process(*(paths.get(word, word) for word in words))
+    assert done.returncode == 1
+    assert done.stderr.decode() == f"mocapress: {paths['LONG']}: File name too long\n"
