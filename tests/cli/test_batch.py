@@ -35,6 +35,15 @@ def made(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.rglob("*.mcz"))
 
 
+def test_a_path_that_cannot_be_looked_at_does_not_end_a_batch(clips: Path) -> None:
+    result = mocapress("compress", "n" * 300, "a.amc", "--json")
+    assert result.exit_code == 1
+    assert made(clips) == ["a.amc.mcz"]
+    rows = {row["file"]: row for row in json.loads(result.stdout)}
+    assert rows["n" * 300]["error"] == "OSError"
+    assert rows["a.amc"]["output"] == "a.amc.mcz"
+
+
 def test_one_bad_file_does_not_end_a_batch(clips: Path) -> None:
     words = ("a.amc", "b.amc", "c.amc", "d.amc")
     result = mocapress("compress", *words)

@@ -60,7 +60,7 @@ def find(inputs: Sequence[Path], suffixes: tuple[str, ...]) -> list[Job]:
     """Turn files and folders into jobs; of a folder, all files below it with these suffixes."""
     jobs = []
     for path in inputs:
-        if path != STREAM and path.is_dir():
+        if path != STREAM and is_folder(path):
             jobs += [Job(found, path, in_folder=True) for found in _below(path, suffixes)]
         else:
             jobs.append(Job(path, path.parent))
@@ -69,6 +69,11 @@ def find(inputs: Sequence[Path], suffixes: tuple[str, ...]) -> list[Job]:
     if len(jobs) > 1 and any(job.source == STREAM for job in jobs):
         usage("stdin cannot be one of many inputs")
     return jobs
+
+
+def is_folder(path: str | Path) -> bool:
+    """Tell whether a path is a folder; one that cannot be looked at fails later, as a file."""
+    return os.path.isdir(path)  # noqa: PTH112 - Path.is_dir raises for a name that is too long
 
 
 def _below(folder: Path, suffixes: tuple[str, ...]) -> list[Path]:

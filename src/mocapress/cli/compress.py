@@ -189,9 +189,10 @@ def _say_what_is_left_out(inputs: list[Path], known: tuple[str, ...]) -> None:
     """Count files in folders that are not compressed, so that nobody deletes them by mistake."""
     from os import walk
 
+    from mocapress.cli.batch import is_folder
     from mocapress.cli.report import say
 
-    for folder in (path for path in inputs if path.is_dir()):
+    for folder in (path for path in inputs if is_folder(path)):
         files = (name for _, _, names in walk(folder) for name in names)
         others = [name for name in files if not name.lower().endswith(known)]
         if others:

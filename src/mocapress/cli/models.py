@@ -5,7 +5,7 @@ from pathlib import Path
 
 import typer
 
-from mocapress.cli.batch import STREAM, Job
+from mocapress.cli.batch import STREAM, Job, is_folder
 from mocapress.cli.report import message, say
 from mocapress.codecs import Model
 from mocapress.errors import MocapressError
@@ -23,7 +23,7 @@ def open_model(path: Path) -> Model:
 
 def open_models(paths: Sequence[Path]) -> list[Place]:
     """Read the models that were named, once for all files; folders stay folders."""
-    return [path if path.is_dir() else open_model(path) for path in paths]
+    return [path if is_folder(path) else open_model(path) for path in paths]
 
 
 def places_for(job: Job, given: Sequence[Place]) -> list[Place]:

@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
-from mocapress.cli.batch import STREAM, Job, usage
+from mocapress.cli.batch import STREAM, Job, is_folder, usage
 from mocapress.errors import MocapressError
 from mocapress.storage import is_stream
 
@@ -67,7 +67,7 @@ def plan(
 
 def refuse_other_kinds(output: str | None, allowed: Sequence[str], others: Iterable[str]) -> None:
     """Refuse a file whose suffix contradicts what is written to it."""
-    if output is None or Path(output).is_dir():
+    if output is None or is_folder(output):
         return
     name = output.lower()
     if name.endswith(tuple(others)) and not name.endswith(tuple(allowed)):
@@ -92,9 +92,9 @@ def _target(job: Job, output: str | None, rename: Callable[[Path], Path], *, fol
 def _is_folder(output: str, *, many: bool) -> bool:
     path = Path(output)
     named = os.path.basename(output) in ("", ".", "..")  # noqa: PTH119 - Path drops the slash
-    if path.is_dir():
+    if is_folder(path):
         return True
-    if path.exists() and (many or named):
+    if os.path.exists(path) and (many or named):  # noqa: PTH110 - see is_folder
         usage(f"-o {output} is not a folder, which many files need")
     if many and not named and path.suffix.lower() in (".mcz", ".mcm", ".json", ".xz"):
         usage(f"-o {output} looks like one file, and many are written; {output}/ makes a folder")
