@@ -89,6 +89,7 @@ def compress(
     from mocapress.cli.models import open_model
     from mocapress.cli.sizes import show_sizes, show_total
     from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
+    from mocapress.codecs.loss import missed_target
     from mocapress.container import diffma_json
     from mocapress.formats import formats, suffixes
     from mocapress.source import JSON_SUFFIXES
@@ -124,6 +125,8 @@ def compress(
         else:
             text, loss = diffma_json.file_to_json(source, made, asf_path=asf)
             blob = diffma_json.named(to, text)
+        missed = missed_target(made, loss) if loss else None
+        facts["warning"] = "; ".join(filter(None, (facts.get("warning"), missed))) or None
         facts["largest_error"] = loss.most if loss else None
         facts["psnr"] = loss.psnr if loss and isfinite(loss.psnr) else None
         job.outputs[job.target] = blob

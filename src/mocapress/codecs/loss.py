@@ -63,3 +63,11 @@ def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss
                 found=f"{error:g}",
             )
     return loss
+
+
+def missed_target(codec: Codec, loss: Loss) -> str | None:
+    """Say that a mean error was asked for which the codec cannot reach, to 1 dB."""
+    target = float(getattr(codec, "target_psnr", 0.0))
+    if not target or loss.psnr > target - 1:
+        return None
+    return f"a PSNR of {target:g} dB was asked for; {codec.id} reaches {loss.psnr:.1f} dB"
