@@ -8,7 +8,6 @@
 namespace mocapress::exact {
 namespace {
 
-constexpr double kTiny = 1e-13;       // keeps the gain of a variable that never moves finite
 constexpr std::size_t kTogether = 4;  // chains that learn side by side
 
 // One chain's part of a step.
@@ -28,8 +27,8 @@ MOCAPRESS_IN_PLACE void step(Rows& chain, std::size_t j) {
   const double p = chain.rest[first][j % kLanes];
   const double faded = chain.fading * chain.diagonal[j];
   const double grown = faded + chain.alpha * (p * p);
-  const double gain = chain.alpha * p / (grown + kTiny);
-  chain.alpha = chain.alpha * (faded + kTiny) / (grown + kTiny);
+  const double gain = chain.alpha * p / (grown + kLeastGrown);
+  chain.alpha = chain.alpha * (faded + kLeastGrown) / (grown + kLeastGrown);
   chain.diagonal[j] = grown;
   chain.rest[first][j % kLanes] = 0;  // so that nothing is added up to row j
   for (std::size_t b = first; b < blocks; ++b) {

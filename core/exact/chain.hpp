@@ -16,6 +16,9 @@
 
 namespace mocapress::exact {
 
+inline constexpr double kLeastGrown =
+    1e-13;  // keeps the gain of a variable that never moves finite
+
 class Chain {
  public:
   // `fading` is lambda; `ridge` the variance that every variable is taken to have at first.

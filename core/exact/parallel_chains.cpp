@@ -1,13 +1,14 @@
 #include "exact/parallel_chains.hpp"
 
 #include <array>
+#include <stdexcept>
 
+#include "exact/chain.hpp"
 #include "numbers/vector_clones.hpp"
 
 namespace mocapress::exact {
 namespace {
 
-constexpr double kTiny = 1e-13;  // keeps the gain of a variable that never moves finite
 constexpr std::size_t kMost = 16;
 
 inline double predicted_in_lane(const Block* block, std::size_t size, std::size_t lane) {
@@ -32,8 +33,8 @@ MOCAPRESS_IN_PLACE void update_block(Block* block, std::size_t size, double fadi
     const Block p = rest[j];
     const Block faded = fading * diagonal[j];
     const Block grown = faded + alpha * (p * p);
-    const Block gain = alpha * p / (grown + kTiny);
-    alpha = alpha * (faded + kTiny) / (grown + kTiny);
+    const Block gain = alpha * p / (grown + kLeastGrown);
+    alpha = alpha * (faded + kLeastGrown) / (grown + kLeastGrown);
     diagonal[j] = grown;
     for (std::size_t r = j + 1; r < size; ++r, ++triangle) {
       rest[r] -= p * *triangle;
@@ -87,6 +88,7 @@ ParallelChains::ParallelChains(std::size_t chains, std::size_t size, double fadi
       fading_(fading),
       stride_(2 * size + size * (size - 1) / 2),
       blocks_(blocks_of(chains) * stride_) {
+  if (size > kMost) throw std::invalid_argument("more predictors of a column than there can be");
   for (std::size_t b = stride_ - size; b < blocks_.size(); b += stride_) {
     for (std::size_t j = 0; j < size; ++j) blocks_[b + j] += ridge;
   }

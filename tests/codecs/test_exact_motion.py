@@ -224,3 +224,23 @@ def test_roles_of_turning_columns_come_back_from_the_header() -> None:
     assert roles.turns == (1, 1, 1)
     assert roles.roles == (Role.PREDICTED,) * 3
     assert Exact().decode(encoded.header, encoded.chunks, clip.columns).shape == (FRAMES, 3)
+
+
+@pytest.mark.parametrize(("polynomials", "fits"), [(12, True), (20, False)])
+def test_a_column_has_no_more_predictors_than_there_is_room_for(
+    polynomials: int, fits: bool
+) -> None:
+    """Headers with two polynomials of one column are refused before; the core relies on nothing."""
+    values = np.random.default_rng(5).normal(0, 1, (40, 3)).cumsum(axis=0)
+    plan = np.array([(0, 0, 0, 0, 0, -1)] * 3, np.int32)
+    couplings: list[tuple[int, list[int], list[int], list[float]]]
+    couplings = [(0, [0, 1], [2], [])] * polynomials
+    start: tuple[list[float], list[list[float]]] = ([], [[]] * 3)
+    if fits:
+        payload, _ = _core.exact_encode(values, plan, couplings, 6, start, False)
+        rows = np.empty_like(values)
+        _core.exact_decode(payload, rows, plan, couplings, 6, start, True)
+        assert rows.tobytes() == values.tobytes()
+    else:
+        with pytest.raises(ValueError, match="more predictors of a column"):
+            _core.exact_encode(values, plan, couplings, 6, start, False)
