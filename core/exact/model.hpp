@@ -46,7 +46,7 @@ struct Channel {
   std::size_t blend = 0;  // its place in `blends`
   std::size_t from = 0;   // what a blend trusts at first: the predictors from <= i < to
   std::size_t to = 0;
-  Choice<Lawful::kPredictions + 1> choice;  // of the law's predictions and the blend
+  Choice<Lawful::kPredictions + 1> choice{};  // of the law's predictions and the blend
 };
 
 // What was learned is kept as floats, chances in 24 bits.

@@ -24,18 +24,15 @@ Variable one(Variable::Kind kind, std::size_t channel) {
   return {kind, {static_cast<std::uint16_t>(channel)}, 1, 0};
 }
 
-// Every channel by those before it in its block, and by the block's last frames.
-void add_blocks(std::vector<ExpertPlan>& plans, std::size_t channels, std::size_t together,
-                int order, int history, double fading) {
-  const std::size_t blocks = (channels + together - 1) / together;
+// Every channel by those before it in its block, and by the block's last frame.
+void add_blocks(std::vector<ExpertPlan>& plans, std::size_t channels, double fading) {
+  const std::size_t blocks = (channels + kMostTogether - 1) / kMostTogether;
   for (std::size_t block = 0; block < blocks; ++block) {
     const std::size_t from = channels * block / blocks;
     const std::size_t to = channels * (block + 1) / blocks;
-    ExpertPlan plan{order, fading, {}};
-    for (int age = history; age >= 1; --age) {
-      for (std::size_t channel = from; channel < to; ++channel) {
-        plan.variables.push_back(past(channel, age));
-      }
+    ExpertPlan plan{1, fading, {}};
+    for (std::size_t channel = from; channel < to; ++channel) {
+      plan.variables.push_back(past(channel, 1));
     }
     for (std::size_t channel = from; channel < to; ++channel) {
       plan.variables.push_back(one(Variable::Kind::target, channel));
@@ -127,7 +124,7 @@ Plans plans(std::span<const Column> columns, std::span<const Coupling> couplings
   }
   const std::size_t before_own = made.size();
   if (level >= 7) add_limbs(made, channels, 1, 0.94);
-  if (level >= 8) add_blocks(made, channels, kMostTogether, 1, 1, 0.998);
+  if (level >= 8) add_blocks(made, channels, 0.998);
   for (const auto& coupling : couplings) {
     if (coupling.kind == 0) made.push_back(coupled(coupling, 0.9998));
   }
