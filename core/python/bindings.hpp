@@ -55,6 +55,8 @@ Given<Element> give(std::vector<Element> data) {
   return give(std::move(data), shape);
 }
 
+void bind_formats(nb::module_& module);
+void bind_motion(nb::module_& module);
 void bind_rows(nb::module_& module);
 void bind_app(nb::module_& module);
 void bind_exact(nb::module_& module);
