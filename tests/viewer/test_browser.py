@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from playwright.sync_api import Browser
 
 import mocapress as mp
 from mocapress.container import diffma_json
+from mocapress.motion.columns import skeleton_columns
 from mocapress.viewer import embed, page
 
 
@@ -256,9 +258,12 @@ def test_a_broken_file_is_told_of(visit: Visit, samples: Path, tmp_path: Path) -
 
 def test_markup_in_names_is_text(visit: Visit, samples: Path, tmp_path: Path) -> None:
     markup = "<img src=x onerror=alert(1)></script><b>"
-    made = clip(samples, "freebvh.bvh") | {"name": markup}
-    for joint in made["exact"]["skeleton"]["joints"]:
-        joint["name"] = markup
+    plain = mp.read(samples / "freebvh.bvh")
+    assert plain.skeleton is not None
+    joints = tuple(replace(joint, name=markup) for joint in plain.skeleton.joints)
+    skeleton = replace(plain.skeleton, joints=joints)
+    columns = skeleton_columns(skeleton)
+    made = embed.exact(mp.Clip.of(plain.values, columns, plain.frame_time, skeleton), markup)
     visit.open(page.document([made, made, made], title=markup), tmp_path)
     visit.until("document.querySelectorAll('#cells span').length === 3")
     assert visit.names() == [markup] * 3
