@@ -50,9 +50,10 @@ class Residual:
     def next(self, channel: int, line: Line, predicted: float, scale: float) -> float:
         """Take a number beside its prediction."""
         try:
-            if scale / line.step(predicted) >= 3:
+            step = line.step(predicted)  # 0 where a float's place is next to 0
+            if step == 0 or scale / step >= 3:
                 return line.number(self._by_bucket(channel, line, predicted, scale))
-            return line.number(self._by_steps(line, predicted, scale / line.step(predicted)))
+            return line.number(self._by_steps(line, predicted, scale / step))
         except OffLineError:
             return of_bits64(self.stream.raw(64))
 
