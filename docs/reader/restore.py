@@ -10,6 +10,8 @@ other and row by row, as little-endian doubles.
 import argparse
 import hashlib
 import importlib
+import lzma
+import struct
 import sys
 import zlib
 from pathlib import Path
@@ -21,6 +23,11 @@ from records import CorruptError
 
 CODECS = ("app", "diffma", "exact")
 LOSSY = ("diffma",)
+# What a broken file may lead to.
+BROKEN = (
+    *(CorruptError, ValueError, LookupError, ArithmeticError),
+    *(struct.error, lzma.LZMAError, zlib.error),
+)
 
 
 def restored(data: bytes, model: bytes | None = None) -> bytes:
@@ -76,7 +83,7 @@ def main() -> None:
     try:
         model = arguments.model.read_bytes() if arguments.model else None
         original = restored(arguments.file.read_bytes(), model)
-    except (CorruptError, ValueError, LookupError, OverflowError) as error:
+    except BROKEN as error:
         sys.exit(f"{arguments.file}: {error}")
     if arguments.output:
         with arguments.output.open("xb") as target:
