@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 
 namespace mocapress {
@@ -54,6 +55,8 @@ C3dProcessor processor_of(ByteView data, std::uint64_t section) {
   return C3dProcessor::intel;
 }
 
+int signed_byte(std::uint8_t byte) { return byte < 128 ? byte : byte - 256; }
+
 std::string_view text(ByteView data, std::uint64_t at, std::uint64_t size) {
   return {reinterpret_cast<const char*>(data.data()) + at, size};
 }
@@ -61,7 +64,7 @@ std::string_view text(ByteView data, std::uint64_t at, std::uint64_t size) {
 // The data of a parameter whose type stands at an offset; false where it goes beyond the end.
 bool read_parameter(ByteView data, std::uint64_t at, C3dParameter& parameter) {
   if (at + 2 > data.size()) return false;
-  parameter.type = static_cast<std::int8_t>(data[at]);
+  parameter.type = signed_byte(data[at]);
   const std::uint64_t dimensions = data[at + 1];
   if (dimensions > 7 || at + 2 + dimensions > data.size()) return false;
   parameter.dimensions = data.subspan(at + 2, dimensions);
@@ -75,8 +78,8 @@ std::vector<C3dParameter> read_parameters(const Bytes16& bytes, std::uint64_t se
   const ByteView data = bytes.data();
   std::vector<C3dParameter> found;
   for (std::uint64_t at = section + 4; at + 2 <= data.size() && found.size() < kMostParameters;) {
-    const int length = std::abs(static_cast<int>(static_cast<std::int8_t>(data[at])));
-    const int id = static_cast<std::int8_t>(data[at + 1]);
+    const int length = std::abs(signed_byte(data[at]));
+    const int id = signed_byte(data[at + 1]);
     const std::uint64_t name = at + 2;
     const std::uint64_t link = name + static_cast<std::uint64_t>(length);
     if (length == 0 || id == 0 || link + 2 > data.size()) break;

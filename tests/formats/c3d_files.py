@@ -149,7 +149,7 @@ def swapped(data: bytes, at: int, number: int) -> bytes:
 def odd_floats(processor: int) -> bytes:
     """Give a C3D with gaps, rotations, NaN, and words that no number has."""
     points, words, analog = walk(150)
-    points[3, 0], points[4, 0, 1], words[6, 0], words[7, 0] = np.nan, -0.0, -0.0, 1.5
+    points[3, 0, 2], points[4, 0, 1], words[6, 0], words[7, 0] = np.nan, -0.0, -0.0, 1.5
     turned = np.sin(0.03 * np.arange(150)[:, None, None] + np.arange(34).reshape(1, 2, 17))
     return c3d(
         points, words, analog, processor=processor, samples=4, rotations=turned, tail=b"between"
