@@ -17,11 +17,11 @@ namespace mocapress::exact {
 namespace {
 
 constexpr std::uint64_t kModel = 1, kOwnCouplings = 2, kSkeleton = 4;
-enum Role : std::uint8_t { predicted, constant, copy, noise, kRoles };
+enum Role : std::uint8_t { kPredicted, kConstant, kCopy, kNoise, kRoles };
 constexpr int kTurns = 3, kLines = 7, kLineDigits = 32, kExponentStep = 8, kMostExponent = 1000;
 constexpr std::size_t kTogether = 1024, kMostPlaces = 1 << 16, kMostTouching = 12;
 constexpr std::uint64_t kMostSources = 6, kMostTargets = 3;
-constexpr std::uint64_t kJointShapes = 27 * 9, kJointOnes = 9, kJointNumbers = 5, kJointBits = 11;
+constexpr std::uint64_t kJointShapes = 243, kJointOnes = 9, kJointNumbers = 5, kJointBits = 11;
 constexpr std::uint64_t kKinds = 8;
 constexpr std::size_t kNowhere = ~std::size_t{0};
 
@@ -69,8 +69,8 @@ std::vector<Shape> own_couplings() {
 
 // A joint's shape and parameters; its columns, counted from the first of the joint.
 Shape read_joint(Record& record) {
-  constexpr std::uint64_t most = 2 * kJointOnes * kJointShapes * kJointBits << kJointNumbers;
-  std::uint64_t told = record.integer(most - 1);
+  constexpr std::uint64_t kMost = 2 * kJointOnes * kJointShapes * kJointBits << kJointNumbers;
+  std::uint64_t told = record.integer(kMost - 1);
   const std::uint64_t given = told % (1 << kJointNumbers);
   told >>= kJointNumbers;
   const int bits = static_cast<int>(told % kJointBits) * 4;
@@ -226,7 +226,7 @@ Header read_header(ByteView header, std::size_t columns) {
   Places moving;
   for (std::size_t c = 0; c < columns; ++c) {
     by_role[roles[c] % kRoles].push_back(c);
-    if (roles[c] % kRoles == predicted || roles[c] % kRoles == noise) moving.push_back(c);
+    if (roles[c] % kRoles == kPredicted || roles[c] % kRoles == kNoise) moving.push_back(c);
   }
   std::vector<Column> all(columns, {Line::float64, 0, false, 0, 0, -1});
   const auto lines = record.palette(moving.size(), kLines * kLineDigits - 1);
@@ -237,27 +237,27 @@ Header read_header(ByteView header, std::size_t columns) {
     if (!line_exists(line, digits)) fail("a line of unknown kind");
     all[c] = {static_cast<Line>(line),
               digits,
-              roles[c] % kRoles == noise,
+              roles[c] % kRoles == kNoise,
               0,
               static_cast<int>(roles[c] / kRoles),
               skeleton ? static_cast<int>(c) : -1};
   }
-  const auto& moved = by_role[predicted];
+  const auto& moved = by_role[kPredicted];
   const auto exponents = record.palette(moved.size(), 2 * kMostExponent / kExponentStep);
   for (std::size_t i = 0; i < moved.size(); ++i) {
     const int half = static_cast<int>(exponents[i] / 2);
     all[moved[i]].exponent = kExponentStep * (exponents[i] % 2 == 0 ? half : -half - 1);
   }
   Header made;
-  const auto back = record.palette(by_role[copy].size(), columns);
+  const auto back = record.palette(by_role[kCopy].size(), columns);
   for (std::size_t i = 0; i < back.size(); ++i) {
-    const auto c = by_role[copy][i];
-    if (back[i] >= c || roles[c - 1 - back[i]] % kRoles == copy) {
+    const auto c = by_role[kCopy][i];
+    if (back[i] >= c || roles[c - 1 - back[i]] % kRoles == kCopy) {
       fail("a column copies one that is not there");
     }
     made.copies.emplace_back(c, c - 1 - back[i]);
   }
-  const auto& still = by_role[constant];
+  const auto& still = by_role[kConstant];
   const std::size_t size = record.integer(std::min(still.size(), record.left()));
   const auto numbers = size > 0 ? record.numbers(size) : std::vector<double>{};
   const auto which = record.indices(still.size(), size);
@@ -273,7 +273,7 @@ Header read_header(ByteView header, std::size_t columns) {
   }
   made.coded = moved;
   std::ranges::sort(made.coded, {}, [&](std::size_t c) { return order.place(c); });
-  std::ranges::copy(by_role[noise], std::back_inserter(made.coded));
+  std::ranges::copy(by_role[kNoise], std::back_inserter(made.coded));
   for (const auto c : made.coded) made.columns.push_back(all[c]);
   for (const auto& coupling : couplings) made.couplings.push_back(coupled(coupling, order));
   made.has_model = (flags & kModel) != 0;

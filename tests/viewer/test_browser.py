@@ -17,6 +17,8 @@ from mocapress.container import diffma_json
 from mocapress.motion.columns import skeleton_columns
 from mocapress.viewer import embed, page
 
+GOLDEN = Path(__file__).parents[1] / "golden"
+
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
@@ -212,6 +214,57 @@ def test_diffma_json_plays(visit: Visit, samples: Path, tmp_path: Path) -> None:
     visit.drop(("bad.diffma.json", file.read_bytes().replace(b'"bits":6', b'"bits":66')))
     visit.until("document.querySelector('.notice') !== null")
     assert visit.text(".notice").startswith("bad.diffma.json: $.params.bits: expected 1 to 12")
+
+
+def test_dropped_mcz_play(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    visit.open(page.document([]), tmp_path)
+    motion = tmp_path / "cmu_01_01.amc.mcz"
+    motion.write_bytes(mp.compress(samples / "cmu_01_01.amc"))
+    visit.drop(motion)
+    visit.until("document.querySelector('.notice')?.textContent.includes('drop the .asf with it')")
+    assert visit.text("#frame").endswith("/ 2751")
+    visit.drop(motion, samples / "cmu_01_01.asf")
+    visit.until("document.querySelector('.notice') === null")
+    visit.seek(0)
+    assert coloured(visit.pixels(), 2) > 500
+    visit.drop(GOLDEN / "v1_trained.bvh.mcz")
+    visit.until("document.querySelector('.notice')?.textContent.includes('needs a model')")
+    visit.drop(GOLDEN / "v1_trained.bvh.mcz", GOLDEN / "v1_trained.mcm", GOLDEN / "v1_learner.mcm")
+    visit.until("document.querySelector('#legend b').textContent === 'v1_trained.bvh.mcz'")
+    packed = diffma_json.named("a.diffma.json.xz", mp.to_json(samples / "freebvh.bvh"))
+    visit.drop(("a.diffma.json.xz", packed))
+    visit.until("document.querySelector('#frame').textContent.endsWith('/ 69')")
+    visit.drop(("cut.mcz", motion.read_bytes()[:5000]))
+    visit.until("document.querySelector('.notice') !== null")
+    assert visit.text(".notice").startswith("cut.mcz, byte 5000: the file is cut off")
+    assert visit.names() == ["a.diffma.json.xz"]
+
+
+def test_an_exported_page_says_which_decoder_it_lacks(
+    visit: Visit, samples: Path, tmp_path: Path
+) -> None:
+    made = clip(samples, "freebvh.bvh")
+    visit.open(page.document([made], assets=embed.assets([made])), tmp_path)
+    visit.until("document.body.dataset.frame > 3")
+    visit.drop(("a.mcz", mp.compress(samples / "mocapbank.bvh", "app")))
+    visit.until("document.querySelector('.notice') !== null")
+    assert "this page does not carry the decoder" in visit.text(".notice")
+    assert "wasm/app.wasm" in visit.text(".notice")
+
+
+def test_the_page_goes_on_while_a_file_is_read(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    visit.open(page.document([clip(samples, "freebvh.bvh")]), tmp_path)
+    made = mp.read(samples / "cmu_01_01.amc")
+    rows = np.resize(np.arange(made.frames), 20_000)
+    long = mp.compress(made.with_frames(made.values[rows], made.frame_time), "exact:level=9")
+    visit.page.evaluate(
+        "globalThis.drawn = 0; (function count() {"
+        " if (document.body.classList.contains('reading')) drawn += 1;"
+        " requestAnimationFrame(count); })()"
+    )
+    visit.drop(("long.mcz", long))
+    visit.until("document.querySelector('#frame').textContent.endsWith('/ 20000')")
+    assert visit.page.evaluate("drawn") > 1  # at most once, if reading held the page up
 
 
 DECODE = """async ([modules, text]) => {

@@ -1,7 +1,7 @@
 import { Record } from "./record.js";
 
 // docs/format.md, "Limits".
-const MOST = { streams: 256, parameters: 64, joints: 2 ** 16, columns: 2 ** 20 };
+const MOST = { streams: 256, parameters: 64, joints: 2 ** 16, columns: 2 ** 20, kinds: 64 };
 const KINDS = ["tx", "ty", "tz", "rx", "ry", "rz", "l"];
 const MODEL_NAME = 32;
 const MOST_DIGITS = 40;
@@ -12,7 +12,8 @@ const MOST_DIGITS = 40;
  * @property {string} kind of others than `channels` only name and kind are known
  * @property {number|null} frames null in a recording
  * @property {number|null} frameTime seconds
- * @property {{name: string, joint: number, kind: string, unit: string}[]} columns
+ * @property {{name: string, joint: number, kind: string, unit: string, bone?: string}[]} columns
+ *     bone: its name in the source, where columns take their names from bones
  * @property {Uint8Array} formats of each column how it was printed: kind and digits
  * @property {string} codec
  * @property {Object<string, number|string|boolean>} parameters
@@ -146,7 +147,7 @@ function readParameter(record) {
 /** Columns, which take their names from joints or bones, or have their own. */
 function readColumns(record, skeleton) {
   const count = record.integer(MOST.columns);
-  const form = record.integer(2);
+  const form = record.integer(3);
   let columns;
   if (form === 0) {
     const joints = skeleton?.joints ?? [];
@@ -158,6 +159,15 @@ function readColumns(record, skeleton) {
   } else if (form === 1) {
     const bones = readBones(record, count);
     columns = columnsOf(bones, ...readKinds(record, count));
+  } else if (form === 3) {
+    const kinds = record.list(record.integer(MOST.kinds), () => record.text());
+    if (!kinds.length || count % kinds.length) {
+      throw record.fail(`${count} columns in groups of ${kinds.length}`);
+    }
+    columns = Array.from({ length: count }, (_, i) => {
+      const kind = kinds[i % kinds.length];
+      return { name: `${Math.floor(i / kinds.length) + 1}.${kind}`, joint: -1, kind, unit: "" };
+    });
   } else {
     const names = record.list(count, () => record.text());
     const joints = record.runs(count, () => record.integer(MOST.joints));
@@ -197,7 +207,8 @@ function columnsOf(bones, kinds, units) {
     const label = nth === 1 ? name : `${name}#${nth}`;
     for (let end = columns.length + count; columns.length < end; ) {
       const kind = kinds[columns.length];
-      columns.push({ name: `${label}.${kind}`, joint, kind, unit: units[columns.length] });
+      const unit = units[columns.length];
+      columns.push({ name: `${label}.${kind}`, joint, kind, unit, bone: name });
     }
   }
   return columns;

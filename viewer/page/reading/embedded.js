@@ -17,7 +17,7 @@ export async function embeddedClips(text, assets) {
   for (const { name, mcz, diffma, angleUnit, maxError } of JSON.parse(text).clips) {
     try {
       const clip = mcz
-        ? await readMcz(bytesOf(mcz), [], assets)
+        ? await readMcz(bytesOf(mcz), [], null, assets)
         : { ...fromDiffma(diffma), angleUnit, maxError };
       clips.push({ ...clip, name });
     } catch (error) {

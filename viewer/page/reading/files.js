@@ -47,12 +47,11 @@ async function readFile(file, files, assets) {
       const xz = await assets.module("vendor/xz/xz.wasm");
       return fromDiffma(new TextDecoder().decode(unpackXz(xz, file.bytes, MOST_JSON)));
     }
-    case "mcz":
-      return readMcz(
-        file.bytes,
-        among("mcm").map(({ bytes }) => bytes),
-        assets,
-      );
+    case "mcz": {
+      const beside = skeletonOf(file, among("asf"));
+      const models = among("mcm").map(({ bytes }) => bytes);
+      return readMcz(file.bytes, models, beside ? readSkeleton(beside) : null, assets);
+    }
     case "mcm":
       throw new FileError("a model without motion", { expected: "a .mcz dropped with it" });
     case "asf":
@@ -119,5 +118,5 @@ function ending(file) {
 }
 
 function stemOf(file) {
-  return file.name.toLowerCase().replace(/\.[^.]*$/, "");
+  return file.name.toLowerCase().replace(/\.mcz$/, "").replace(/\.[^.]*$/, "");
 }

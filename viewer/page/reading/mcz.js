@@ -1,5 +1,7 @@
 import { decodeStream, openMcz } from "../../mcz/mcz.js";
+import { columnsOf } from "./amc.js";
 import { FileError } from "./file_error.js";
+import { channelNames } from "./skeleton.js";
 
 const MOST_VALUES = 5e7; // 400 MB
 
@@ -8,11 +10,12 @@ const MOST_VALUES = 5e7; // 400 MB
  *
  * @param {Uint8Array} bytes
  * @param {Uint8Array[]} models `.mcm` files among which that is which the file may name
+ * @param {import("./skeleton.js").Skeleton|null} beside of an AMC that does not have its own
  * @param {import("../../mcz/assets.js").Assets} assets
  * @returns {Promise<import("./clip.js").Clip>}
  * @throws {FileError|import("../../mcz/error.js").MczError}
  */
-export async function readMcz(bytes, models, assets) {
+export async function readMcz(bytes, models, beside, assets) {
   const mcz = await openMcz(bytes, assets);
   const main = mcz.streams.findIndex(({ kind }) => kind === "channels");
   if (main < 0) throw new FileError("no stream that this page knows");
@@ -35,21 +38,30 @@ export async function readMcz(bytes, models, assets) {
   }
   const unit = columns.find(({ kind }) => kind[0] === "r")?.unit;
   const others = mcz.streams.filter((_, i) => i !== main).map((stream) => stream.name);
+  const skeleton = skeletonOf(mcz.skeleton, columns, beside);
   const notes = [
-    mcz.skeleton ? "" : "no skeleton in this file: only its curves can be shown",
+    skeleton ? "" : "no skeleton in this file: only its curves can be shown; drop the .asf with it",
     mcz.closed ? "" : "the recording was not closed",
     others.length ? `only stream ${name} is shown, not ${others.join(", ")}` : "",
   ];
   return {
-    names: columns.map((column) => column.name),
+    names: skeleton && !mcz.skeleton ? channelNames(skeleton) : columns.map((column) => column.name),
     frames,
     channels,
-    skeleton: mcz.skeleton && {
-      ...mcz.skeleton,
-      columns: columns.map(({ joint, kind }) => [joint, kind]),
-    },
+    skeleton,
     frameTime,
     angleUnit: unit === "deg" || unit === "rad" ? unit : undefined,
     notes: notes.filter(Boolean),
   };
+}
+
+function skeletonOf(own, columns, beside) {
+  if (own) return { ...own, columns: columns.map(({ joint, kind }) => [joint, kind]) };
+  if (!beside || !columns.every(({ bone }) => bone !== undefined)) return null;
+  const bones = [];
+  for (const { bone: name, joint } of columns) {
+    if (bones.at(-1)?.joint === joint) bones.at(-1).count++;
+    else bones.push({ name, joint, count: 1 });
+  }
+  return { ...beside, columns: columnsOf(beside, bones) };
 }
