@@ -7,6 +7,13 @@ import numpy
 from numpy.typing import NDArray
 
 
+def c3d_layout(data: bytes) -> tuple[int, bool, int, int, int, int, tuple[int, int, int], tuple[int, int, int], list[tuple[int, bool, bytes, int, bytes, int, int]]]:
+    """
+    Give processor, whether numbers are floats, announced frames, points, analog numbers
+    in a frame, samples of each channel in it; begin, count and numbers of the frames
+    and of the rotations; and the parameters: see core/formats/c3d.hpp.
+    """
+
 class Problem:
     """What is wrong with a file; None is what is not said."""
 
