@@ -16,6 +16,7 @@ import sys
 import zlib
 from pathlib import Path
 
+import c3d
 from container import Stream, packed, read_file, read_model
 from layout import Layout
 from records import CorruptError
@@ -39,7 +40,11 @@ def restored(data: bytes, model: bytes | None = None) -> bytes:
         original = file.layout
     else:
         rows = decoded(file.streams[0], model)
-        original = Layout(file, len(rows)).printed(rows)
+        if file.format == "c3d":
+            others = [decoded(stream, None) for stream in file.streams[1:]]
+            original = c3d.Layout(file.layout).printed([rows, *others])
+        else:
+            original = Layout(file, len(rows)).printed(rows)
     codecs = [stream.codec for stream in file.streams]
     if hashlib.sha256(original).digest() != file.digest and not set(codecs) & set(LOSSY):
         raise CorruptError("what was restored is not the original")
