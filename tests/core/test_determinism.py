@@ -4,6 +4,7 @@ The check programs, core/check/CODEC.cpp, code made-up motion, decode it and pri
 Built as the package is, what they print is in tests/golden/; built otherwise, they must print that.
 """
 
+import os
 import platform
 import shutil
 import subprocess
@@ -27,6 +28,8 @@ class Way(NamedTuple):
     """Of the processor, as /proc/cpuinfo has them."""
     under: tuple[str, ...] = ()
     """The emulator that runs it."""
+    ending: str = ""
+    """Of the program's name."""
 
 
 V4 = frozenset({"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"})
@@ -40,6 +43,7 @@ WAYS = {
     "clang with AVX2 and FMA": Way("clang", "clang++", FUSED),
     "clang -O0": Way("clang_o0", "clang++"),
     "aarch64, emulated": Way("aarch64", "aarch64-linux-gnu-g++", under=("qemu-aarch64",)),
+    "Windows": Way("windows", "x86_64-w64-mingw32-g++-posix", under=("wine",), ending=".exe"),
     "as the package is built, on the oldest x86-64, emulated": Way(
         "usual", under=("qemu-x86_64", "-cpu", "qemu64")
     ),
@@ -58,10 +62,11 @@ def printed(codec: str, way: Way) -> str:
         pytest.skip("for x86-64 only")
     if missing := way.features - features():
         pytest.skip(f"this processor has no {', '.join(sorted(missing))}")
-    program = f"build/check/{way.name}/{codec}"
+    program = f"build/check/{way.name}/{codec}{way.ending}"
     subprocess.run(["make", "-s", program], cwd=ROOT, check=True, capture_output=True)
     whole = [*way.under, str(ROOT / program)]
-    return subprocess.run(whole, capture_output=True, text=True, check=True).stdout
+    quiet = os.environ | {"WINEDEBUG": "-all"}
+    return subprocess.run(whole, capture_output=True, text=True, check=True, env=quiet).stdout
 
 
 def features() -> set[str]:
