@@ -4,6 +4,7 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePath
+from typing import NamedTuple
 
 from mocapress import codecs
 from mocapress.api.encoding import coded, placed, stored_skeleton
@@ -20,12 +21,12 @@ from mocapress.formats.layout_record import write_layout
 from mocapress.formats.patterns import References
 from mocapress.models import load_model
 from mocapress.motion import Clip
-from mocapress.motion.clip import MOTION
 from mocapress.source import Named, Source
 
 # Below this size, or above this share of the original, the general-purpose way is tried as well.
 _SMALL = 2**15
 _POOR = 0.4
+_LONGEST_CHUNK = 2**20
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,7 +189,7 @@ def _compress_motion(
     model: Model | None,
     notes: Mapping[str, str],
 ) -> tuple[bytes | None, str | None, Loss | None]:
-    clip, layout, problems = parts
+    clip, layout, problems, _ = parts
     data, file = source.data, source.name or None
     warning = "; ".join(str(problem.error(file)) for problem in problems) or None
     irregular = layout.verbatim_bytes() + len(layout.tail) > len(data) / 2
@@ -201,13 +202,11 @@ def _compress_motion(
 
     def work(way: Codec) -> tuple[bytes, Loss | None]:
         own = model if way is codec else None
-        encoded = way.encode(clip.main, skeleton=clip.skeleton, model=own)
         blob = motion_file(
             parts,
             data,
             _name(source.name),
-            way,
-            encoded,
+            _coded_streams(clip, way, own),
             own,
             with_skeleton=with_skeleton,
             companions=embedded,
@@ -220,12 +219,35 @@ def _compress_motion(
     return blob, "; ".join(filter(None, (failure, warning))) or None, loss
 
 
+class CodedStream(NamedTuple):
+    """What a codec made of a stream."""
+
+    codec: Codec
+    encoded: Encoded
+
+
+def _coded_streams(clip: Clip, codec: Codec, model: Model | None) -> list[CodedStream]:
+    """Code all streams of a motion file; a lossy codec and the model are for the first."""
+    made = []
+    for index, stream in enumerate(clip.streams.values()):
+        way = codec if index == 0 or codec.lossless else codecs.codec(DEFAULT_CODEC)
+        # Chunks of all streams last as long.
+        times = stream.frames // clip.frames
+        chunk = getattr(way, "chunk", None)
+        if chunk and times > 1:
+            way = codecs.from_parameters(
+                way.id, {**codecs.parameters(way), "chunk": min(chunk * times, _LONGEST_CHUNK)}
+            )
+        own = model if index == 0 else None
+        made.append(CodedStream(way, way.encode(stream, skeleton=clip.skeleton, model=own)))
+    return made
+
+
 def motion_file(
     parts: Split,
     data: bytes,
     name: str,
-    codec: Codec,
-    encoded: Encoded,
+    streams: Sequence[CodedStream],
     model: Model | None = None,
     *,
     with_skeleton: bool = True,
@@ -238,31 +260,37 @@ def motion_file(
     ----------
     parts, data, name
         The motion file taken apart, its contents, and its name without folders.
-    codec, encoded, model
-        The codec, what it made of the clip, and with what model.
+    streams, model
+        What codecs made of the clip's streams, and with what model of the first.
     with_skeleton
         Whether the clip's skeleton is stored.
     companions, notes
         What else is stored.
 
     """
-    clip, layout, problems = parts
+    clip, layout, problems, stored = parts
     skeleton = stored_skeleton(clip) if with_skeleton else None
-    columns = clip.columns if skeleton else placed(clip.columns)
-    bones = [bone.name for bone in bones_of(columns) for _ in range(bone.columns)]
-    references = References.of(skeleton, bones, clip.frame_time)
-    original = Original(
-        layout.format,
-        name,
-        len(data),
-        hashlib.sha256(data).digest(),
-        problems,
-        pack(write_layout(layout, references)),
-    )
-    head, chunks = coded(clip, MOTION, 0, codec, encoded, model)
+    columns, kind = clip.columns, layout.format
+    if stored is None:
+        columns = columns if skeleton else placed(columns)
+        bones = [bone.name for bone in bones_of(columns) for _ in range(bone.columns)]
+        record = write_layout(layout, References.of(skeleton, bones, clip.frame_time))
+    else:
+        record, kind = stored.record(), stored.format
+    digest = hashlib.sha256(data).digest()
+    original = Original(kind, name, len(data), digest, problems, pack(record))
+    heads, chunks = [], []
+    for index, ((of_stream, stream), (codec, encoded)) in enumerate(
+        zip(clip.streams.items(), streams, strict=True)
+    ):
+        alone, own = Clip({of_stream: stream}, clip.skeleton), model if index == 0 else None
+        head, found = coded(alone, of_stream, index, codec, encoded, own)
+        heads.append(head)
+        chunks += found
+    heads[0] = replace(heads[0], columns=columns)
     made: list[bytes] = []
     writer = MczWriter(made.append)
-    writer.head(Head((replace(head, columns=columns),), skeleton))
+    writer.head(Head(tuple(heads), skeleton))
     writer.original(original)
     for companion in companions:
         writer.companion(companion)
