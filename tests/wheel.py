@@ -26,7 +26,7 @@ if __name__ == "__main__":
         page = folder / "page.html"
         subprocess.run([*command, "view", *clips, "--export", page], check=True)
         assert page.stat().st_size > 100_000
-    read_me = str(metadata("mocapress").get_payload())
+    read_me = str(metadata("mocapress").json["description"])
     assert "](https://github.com/" in read_me
     assert not re.search(r'\]\((?!https:|#)|src="(?!https:)', read_me)
     print(f"mocapress {mp.__version__} works as installed")
