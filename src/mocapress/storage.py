@@ -44,6 +44,7 @@ def write_all(
     force: bool = False,
     like: os.stat_result | None = None,
     times: bool = True,
+    modified: int | None = None,
 ) -> None:
     """Write files that belong together: all of them, or none.
 
@@ -62,6 +63,8 @@ def write_all(
         permissions, and a new one has the usual ones.
     times
         Whether they get the modification time of ``like``, too.
+    modified
+        Their modification time, in nanoseconds since 1970, where there is no such file.
 
     Raises
     ------
@@ -82,6 +85,9 @@ def write_all(
         for (path, data), target in zip(whole, targets, strict=True):
             with _naming(path):
                 part = stack.enter_context(_part(target, data, like, times=times))
+                if modified is not None:
+                    with suppress(OSError):
+                        os.utime(part, ns=(modified, modified))
             parts.append((path, target, part))
         _commit(parts, force=force)
     for folder in {target.parent for target in targets}:
