@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from mocapress.api import Opened
-from mocapress.api.compressing import motion_file
+from mocapress.api.compressing import CodedStream, motion_file
 from mocapress.api.restoring import layout_of
 from mocapress.codecs import Chunk, Codec, Model
 from mocapress.container import StreamHead
@@ -105,7 +105,9 @@ def _codec_row(
         lambda: codec.encode(clip.main, skeleton=clip.skeleton, model=model), repeat
     )
     blob, pack_s = _best(
-        lambda: motion_file(parts, data, path.name, codec, encoded, model, with_skeleton=False),
+        lambda: motion_file(
+            parts, data, path.name, [CodedStream(codec, encoded)], model, with_skeleton=False
+        ),
         repeat,
     )
     (layout, chunks, head), open_s = _best(lambda: _open(blob), repeat)
@@ -139,7 +141,7 @@ def _open(blob: bytes) -> tuple[Layout, tuple[Chunk, ...], StreamHead]:
 
 
 def _rival_row(data: bytes, path: Path, rival: Rival, repeat: int) -> Row:
-    (clip, layout, _), split_s = _best(lambda: Source(data, str(path)).split(), repeat)
+    (clip, layout, *_), split_s = _best(lambda: Source(data, str(path)).split(), repeat)
     packed, encode_s = _best(lambda: rival.compress(clip.values), repeat)
     values, decode_s = _best(lambda: rival.decompress(packed, (clip.frames, clip.channels)), repeat)
     restored, join_s = _best(lambda: layout.join(values), repeat)

@@ -30,7 +30,7 @@ def main(path: Path, name: str) -> None:
     if isinstance(contender, Tool):
         contender.decompress(contender.compress(data))
     else:
-        clip, layout, _ = Source(data, path.name).split()
+        clip, layout, *_ = Source(data, path.name).split()
         if isinstance(contender, Rival):
             packed = contender.compress(clip.values)
             values = contender.decompress(packed, (clip.frames, clip.channels))

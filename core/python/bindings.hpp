@@ -55,6 +55,7 @@ Given<Element> give(std::vector<Element> data) {
   return give(std::move(data), shape);
 }
 
+void bind_c3d(nb::module_& module);
 void bind_rows(nb::module_& module);
 void bind_app(nb::module_& module);
 void bind_exact(nb::module_& module);

@@ -170,22 +170,8 @@ def read_stream(record: Record, joints: list[Joint]) -> Stream:
     elif time == 2:
         told.integer()
         told.integer()
-    count, bones = told.integer(), list[str]()
-    form = told.integer()
-    if form == 0:
-        bones = [joint.name for joint in joints for _ in joint.channels]
-    elif form == 1:
-        for _ in range(told.integer()):
-            bones += [told.text()] * told.integer()
-            told.signed()
-    else:
-        for _ in range(count):
-            told.text()
-        told.list_in_runs(count)
-    if form > 0:
-        for _ in range(count):
-            told.text()
-        text_runs(told, count)
+    count = told.integer()
+    bones = read_bones(told, joints, count)
     formats = [None, *(told.raw(4) for _ in range(told.integer()))]
     own = [formats[index] for index in told.list_in_runs(count)]
     codec, parameters = told.text(), dict[str, str]()
@@ -197,6 +183,30 @@ def read_stream(record: Record, joints: list[Joint]) -> Stream:
     return Stream(
         frames if frames >= 0 else None, frame_time, bones, own, codec, parameters, model, header
     )
+
+
+def read_bones(told: Record, joints: list[Joint], count: int) -> list[str]:
+    """Take columns; give the bone of each, where they have bones."""
+    bones = list[str]()
+    form = told.integer()
+    if form == 0:
+        bones = [joint.name for joint in joints for _ in joint.channels]
+    elif form == 1:
+        for _ in range(told.integer()):
+            bones += [told.text()] * told.integer()
+            told.signed()
+    elif form == 3:
+        for _ in range(told.integer()):
+            told.text()
+    else:
+        for _ in range(count):
+            told.text()
+        told.list_in_runs(count)
+    if form in (1, 2):
+        for _ in range(count):
+            told.text()
+        text_runs(told, count)
+    return bones
 
 
 def text_runs(record: Record, count: int) -> None:

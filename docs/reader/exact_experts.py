@@ -1,210 +1,181 @@
-"""Predictors of ``exact``, levels 3 to 9: chains of regressions that learn as they go."""
+"""Chains, experts and the blend of ``exact`` (docs/format/exact.md, "Experts" and "Blend")."""
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable
+from functools import partial
+from itertools import groupby
 
-from exact_skeleton import channels as skeleton_channels
+from exact_functions import cut, total
+from exact_skeleton import LIMBS, Levels, Skeleton
 
-if TYPE_CHECKING:
-    from exact import Column, Coupling
-
-TINY = 1e-13
-LIMB, WHOLE = 6, 72
-
-
-class Frames:
-    """The levels of the last six frames, of this one as far as they are known."""
-
-    def __init__(self, count: int) -> None:
-        self.rows = [[0.0] * count for _ in range(6)]
-        self.guesses = [0.0] * count
-        """Second differences, of the skeleton."""
-
-    def next(self) -> None:
-        """Begin a frame."""
-        self.rows.insert(0, self.rows.pop())
-
-    def level(self, channel: int, age: int) -> float:
-        """Give the level of a frame that is so old."""
-        return self.rows[age][channel]
-
-    def difference(self, channel: int, order: int, age: int) -> float:
-        """Give the first or second difference that ends there."""
-        one, two = self.rows[age][channel], self.rows[age + 1][channel]
-        return one - two if order == 1 else (one - two) - (two - self.rows[age + 2][channel])
+Variable = Callable[[], float]
 
 
 class Chain:
-    """Every variable from those before it, by least squares over a fading past."""
+    """Experts: variables that are predicted from those before them."""
 
-    def __init__(self, count: int, fading: float, ridge: float) -> None:
-        self.fading = fading
-        self.diagonal = [ridge] * count
-        self.columns = [[0.0] * (count - j - 1) for j in range(count)]
-        """L below its diagonal."""
-        self.values = [0.0] * count
+    def __init__(self, count: int, fading: float, start: float) -> None:
+        self.fading, self.d = fading, [start] * count
+        self.triangle = [[0.0] * (count - 1 - j) for j in range(count)]
+        """Of each column what is below the diagonal."""
+        self.begin()
 
     def begin(self) -> None:
         """Begin a frame."""
-        self.predicted = [0.0] * len(self.values)
+        self.seen, self.errors = list[float](), list[float]()
+        self.ahead = [0.0] * len(self.d)
 
-    def see(self, variable: int, value: float) -> None:
-        """Take the next variable."""
-        self.values[variable] = value
-        off = value - self.predicted[variable]
-        if off != 0:
-            later = zip(self.predicted[variable + 1 :], self.columns[variable], strict=True)
-            self.predicted[variable + 1 :] = [p + off * factor for p, factor in later]
+    def prediction(self) -> float:
+        """Predict the next variable."""
+        return self.ahead[len(self.seen)]
 
-    def learn(self, weight: float) -> None:
-        """Learn from the frame, which is complete."""
-        rest = self.values
-        for j, column in enumerate(self.columns):
-            p, rest = rest[0], rest[1:]
-            faded = self.fading * self.diagonal[j]
-            grown = faded + weight * (p * p)
-            gain = weight * p / (grown + TINY)
-            weight = weight * (faded + TINY) / (grown + TINY)
-            self.diagonal[j] = grown
-            if p != 0:
-                rest = [x - p * factor for x, factor in zip(rest, column, strict=True)]
-                self.columns[j] = [f + gain * x for f, x in zip(column, rest, strict=True)]
+    def see(self, value: float) -> None:
+        """See the next variable."""
+        error = value - self.prediction()
+        if error:
+            for i, factor in enumerate(self.triangle[len(self.seen)], len(self.seen) + 1):
+                self.ahead[i] += error * factor
+        self.seen.append(value)
+        self.errors.append(error)
 
-    def numbers(self) -> list[float]:
-        """Give what it has learned."""
-        return [factor for column in self.columns for factor in column] + self.diagonal
-
-    def take(self, numbers: list[float]) -> None:
-        """Begin with what another has learned."""
-        given = iter(numbers)
-        self.columns = [[next(given) for _ in column] for column in self.columns]
-        self.diagonal = list(given)
-
-
-# A variable: what it is, channels, age.
-Variable = tuple[str, tuple[int, ...], int]
+    def learn(self, alpha: float) -> None:
+        """Learn from a frame with a weight."""
+        x = self.seen
+        for j, column in enumerate(self.triangle):
+            p = x[j]
+            d = self.fading * self.d[j]
+            g = self.d[j] = d + alpha * (p * p)
+            b = alpha * p / (g + 1e-13)
+            alpha = alpha * (d + 1e-13) / (g + 1e-13)
+            if p:
+                for i, factor in enumerate(column, j + 1):
+                    x[i] -= p * factor
+                    column[i - j - 1] = factor + b * x[i]
+        self.begin()
 
 
 class Expert:
-    """A chain over chosen variables."""
+    """Experts: a chain of differences of levels, some of which it predicts."""
 
-    def __init__(self, order: int, fading: float, variables: list[Variable]) -> None:
-        self.order = order
-        self.variables = variables
-        self.chain = Chain(len(variables), fading, 0.01)
-        self.targets = {
-            channels[0]: i for i, (kind, channels, _) in enumerate(variables) if kind == "target"
-        }
-        self.usual = [0.01] * len(variables)
+    def __init__(
+        self,
+        levels: Levels,
+        order: int,
+        fading: float,
+        targets: Iterable[int],
+        before: Iterable[tuple[int, int]] = (),
+        products: Iterable[Variable] = (),
+        guess: Callable[[int], float] | None = None,
+    ) -> None:
+        """Take channels and ages of the variables before the targets, and what stands behind."""
+        self.levels, self.order = levels, order
+        difference = partial(levels.difference, order)
+        self.variables: list[Variable] = [partial(difference, c, age) for c, age in before]
+        self.variables += products
+        self.targets = dict[int, int]()
+        """Channel, and which variable it is."""
+        for c in targets:
+            if guess:
+                self.variables.append(partial(guess, c))
+            self.targets[c] = len(self.variables)
+            self.variables.append(partial(difference, c, 0))
+        self.chain = Chain(len(self.variables), fading, 0.01)
+        self.squares = dict.fromkeys(self.targets, 0.01)
 
-    def begin(self) -> None:
-        """Begin a frame."""
-        self.chain.begin()
-        self.seen = 0
+    def _see(self, count: int) -> None:
+        for variable in self.variables[len(self.chain.seen) : count]:
+            self.chain.see(variable())
 
-    def _see(self, end: int, frames: Frames) -> None:
-        while self.seen < end:
-            self.chain.see(self.seen, self._value(self.variables[self.seen], frames))
-            self.seen += 1
-
-    def _value(self, variable: Variable, frames: Frames) -> float:
-        kind, channels, age = variable
-        if kind == "guess":
-            return frames.guesses[channels[0]]
-        if kind != "product":
-            return frames.difference(channels[0], self.order, age)
-        products = []
-        for old in (0, 1):
-            product = 1 / (1.0 / 30)
-            for channel in channels:
-                product *= frames.level(channel, old) * (1.0 / 30)
-            products.append(product)
-        return products[0] - products[1]
-
-    def predict(self, channel: int, frames: Frames) -> float:
-        """Give the level of a channel."""
-        variable = self.targets[channel]
-        self._see(variable, frames)
-        expected = frames.level(channel, 1)
+    def predict(self, c: int) -> float:
+        """Predict the level of a target."""
+        self._see(self.targets[c])
+        known = self.levels.past[c][1]
         if self.order == 2:
-            expected += frames.difference(channel, 1, 1)
-        return expected + self.chain.predicted[variable]
+            known += self.levels.difference(1, c, 1)
+        return known + self.chain.prediction()
 
-    def learn(self, frames: Frames) -> None:
-        """Learn from the frame, which is complete."""
-        self._see(len(self.variables), frames)
-        unusual = 0.0
-        for i in self.targets.values():
-            off = self.chain.values[i] - self.chain.predicted[i]
-            square = off * off
-            unusual += min(square / (self.usual[i] + 1e-12), 100.0)
-            self.usual[i] += 0.02 * (square - self.usual[i])
-        self.chain.learn(1 / math.sqrt(unusual / len(self.targets) + 0.05))
+    def learn(self) -> None:
+        """Learn from a frame."""
+        self._see(len(self.variables))
+        u = 0.0
+        for c, place in self.targets.items():
+            square, m = self.chain.errors[place] * self.chain.errors[place], self.squares[c]
+            u += min(square / (m + 1e-12), 100.0)
+            self.squares[c] = m + 0.02 * (square - m)
+        self.chain.learn(1 / math.sqrt(u / len(self.targets) + 0.05))
 
 
-def experts(columns: list["Column"], couplings: list["Coupling"], level: int) -> list[Expert]:
-    """Make the experts of a level."""
-    count = len(columns)
-    made = []
-    if level >= 8 and any(column.place is not None for column in columns):
-        made += [*geometry(columns, 0, 0.9), *geometry(columns, 2, 0.98)]
+def make_experts(
+    level: int,
+    levels: Levels,
+    columns: list[int],
+    skeleton: Skeleton | None,
+    polynomials: list[tuple[list[int], list[int]]],
+) -> list[Expert]:
+    """Make the experts of channels, of which ``columns`` are the columns of the clip."""
+    n, make = len(columns), partial(Expert, levels)
+    sixes = [range(at, min(at + 6, n)) for at in range(0, n, 6)]
+    free = [[(c, 0) for c in range(six[0]) if c < 6 or c >= six[0] - 6] for six in sixes]
+    count = -(-n // 72)
+    wide = [range(n * b // count, n * (b + 1) // count) for b in range(count)]
+    if skeleton:
+        limbs = [list(run) for _, run in groupby(range(n), lambda c: LIMBS[columns[c]])]
+        older = [[(c, age) for age in (2, 1) for c in limb] for limb in limbs]
+        experts = [make(2, 0.9, limb, guess=skeleton.guess) for limb in limbs]
+        experts += [
+            make(2, 0.98, *told, guess=skeleton.guess) for told in zip(limbs, older, strict=True)
+        ]
     else:
-        made += limbs(count, 2)
-    made += [Expert(1, 0.99, past([c], 3) + variables("target", [c])) for c in range(count)]
+        experts = [make(2, 0.94, *told) for told in zip(sixes, free, strict=True)]
+    experts += [make(1, 0.99, [c], [(c, 3), (c, 2), (c, 1)]) for c in range(n)]
     if level >= 7:
-        made += limbs(count, 1)
+        experts += [make(1, 0.94, *told) for told in zip(sixes, free, strict=True)]
     if level >= 8:
-        blocks = -(-count // WHOLE)
-        for block in range(blocks):
-            own = range(count * block // blocks, count * (block + 1) // blocks)
-            made.append(Expert(1, 0.998, past(own, 1) + variables("target", own)))
-    for coupling in couplings:
-        if coupling.kind == 0:
-            made.append(polynomial(coupling))
-    return made
+        experts += [make(1, 0.998, block, [(c, 1) for c in block]) for block in wide]
+    for sources, targets in polynomials:
+        known = [(c, 0) for c in sources]
+        experts.append(make(1, 0.9998, targets, known, products(levels, sources)))
+    return experts
 
 
-def variables(kind: str, channels: list[int] | range) -> list[Variable]:
-    """Give variables of this frame."""
-    return [(kind, (channel,), 0) for channel in channels]
+def products(levels: Levels, sources: list[int]) -> list[Variable]:
+    """Give the products of two and of three sources."""
+
+    def value(factors: tuple[int, ...], age: int) -> float:
+        told = 1 / (1 / 30)
+        for c in factors:
+            told *= levels.past[c][age] * (1 / 30)
+        return told
+
+    found: list[tuple[int, ...]] = []
+    for i, one in enumerate(sources):
+        for j, two in enumerate(sources[i:], i):
+            found += [(one, two), *((one, two, three) for three in sources[j:])]
+    return [partial(lambda factors: value(factors, 0) - value(factors, 1), own) for own in found]
 
 
-def past(channels: list[int] | range, history: int) -> list[Variable]:
-    """Give variables of the frames before, oldest first."""
-    return [("past", (c,), age) for age in range(history, 0, -1) for c in channels]
+class Blend:
+    """Blend: one move out of the predictions."""
 
+    def __init__(self, count: int, level: int) -> None:
+        fadings = (0.94, 0.985, 0.998) if level >= 8 else (0.94,)
+        self.chains = [Chain(count, fading, 1.0) for fading in fadings]
+        self.v = [1.0 for _ in fadings]
 
-def limbs(count: int, order: int) -> list[Expert]:
-    """Make experts of six channels each."""
-    made = []
-    for start in range(0, count, LIMB):
-        known = [c for c in range(start) if c < LIMB or c >= start - LIMB]
-        own = range(start, min(count, start + LIMB))
-        made.append(Expert(order, 0.94, variables("known", known) + variables("target", own)))
-    return made
+    def mix(self, moves: list[float], mean: float) -> float:
+        """Give the move."""
+        for chain in self.chains:
+            for p in moves[1:]:
+                chain.see(p - mean)
+        self.mean, self.h = mean, [chain.prediction() for chain in self.chains]
+        squares = [v * v + 1e-12 for v in self.v]
+        w = [1 / (s * s) for s in squares]
+        return mean + total(a * b for a, b in zip(w, self.h, strict=True)) / total(w)
 
-
-def geometry(columns: list["Column"], history: int, fading: float) -> list[Expert]:
-    """Make experts of the limbs of the known skeleton."""
-    by_limb: list[tuple[int, list[int]]] = []
-    for c, column in enumerate(columns):
-        limb = skeleton_channels()[column.place or 0][1]
-        if not by_limb or by_limb[-1][0] != limb:
-            by_limb.append((limb, []))
-        by_limb[-1][1].append(c)
-    made = []
-    for _, own in by_limb:
-        both: list[Variable] = [(kind, (c,), 0) for c in own for kind in ("guess", "target")]
-        made.append(Expert(2, fading, past(own, history) + both))
-    return made
-
-
-def polynomial(coupling: "Coupling") -> Expert:
-    """Make the expert of a coupling of kind 0."""
-    sources = coupling.sources
-    told = variables("known", sources)
-    for i in range(len(sources)):
-        for j in range(i, len(sources)):
-            told.append(("product", (sources[i], sources[j]), 0))
-            told += [("product", (sources[i], sources[j], k), 0) for k in sources[j:]]
-    return Expert(1, 0.9998, told + variables("target", coupling.targets))
+    def learn(self, e: float, scale: float) -> None:
+        """Learn from the move that was right."""
+        for k, (chain, h) in enumerate(zip(self.chains, self.h, strict=True)):
+            error = (e - self.mean - h) / scale
+            self.v[k] += 0.05 * (min(error * error, 25.0) - self.v[k])
+            chain.see(cut(error, -6.0, 6.0) * scale + h)
+            chain.learn(1 / (scale * scale))

@@ -1,274 +1,235 @@
-"""Levels 1 and 2 of ``exact``."""
+"""Levels 1 and 2 of ``exact`` (docs/format/exact_fast.md)."""
 
 import math
-from typing import TYPE_CHECKING
+from bisect import bisect_right
+from functools import cache
+from itertools import accumulate
 
-from exact_noise import Noise
+from exact_coding import Noise
+from exact_functions import cut, rounded_away, total
+from exact_header import Column
 from lines import (
     DECIMALS,
     FLOAT64,
     SHORTEST32,
+    SIGNIFICANT,
+    Line,
     bits64,
     decade_of_number,
     of_bits64,
     power_of_ten,
+    rounded,
 )
 from streams import Bit, Intervals
 
-if TYPE_CHECKING:
-    from exact import Column
-
-PLANS = {1: (1, 4, 0.95), 2: (2, 8, 0.96)}  # own inputs, channels before, fading
-TINY = 1e-13
-FAR = 30
-FIRST_CLASS = 12
+# Own bends and channels before that predict, and the fading.
+INPUTS = {1: (1, 4, 0.95), 2: (2, 8, 0.96)}
+# Where each bucket but the last begins, and log2 of how wide it is.
+BUCKETS = [(a, 0) for a in range(16)]
+BUCKETS += [(more << k, k) for k in range(3, 10) for more in (2, 3)]
 
 
-def octaves(number: float) -> int:
-    """Give the logarithm to the base 2 in 1/256."""
-    return (bits64(number) >> 44) - 1023 * 256
+def octaves(x: float) -> int:
+    """Octaves of a double."""
+    return (bits64(x) >> 44) - 1023 * 256
 
 
-def of_octaves(value: int) -> float:
-    """Give the number of a logarithm."""
-    return of_bits64((value + 1023 * 256) << 44)
+def of_octaves(count: int) -> float:
+    """Octaves: the double of so many."""
+    return of_bits64((count + 1023 * 256) << 44)
 
 
-def bounded(level: float) -> float:
-    """Keep a level within 10^12."""
-    return level if -1e12 < level < 1e12 else 1e12 if level >= 1e12 else -1e12
+def student(x: float) -> float:
+    """Tables: Student's distribution."""
+    u = 0.5 * x / math.sqrt(1 + (0.25 * x) * x)
+    return 0.5 + (0.75 * u) * (1 - (u * u) / 3)
 
 
-def bucket(index: int) -> tuple[int, int]:
-    """Give the first distance of a bucket, and in how many bits the rest stands."""
-    if index < 16:
-        return index, 0
-    half = index - 16
-    return (2 + half % 2) << 3 + half // 2, 3 + half // 2
-
-
-def cumulative(x: float) -> float:
-    """Student's t of four degrees of freedom."""
-    u = 0.5 * x / math.sqrt(1 + 0.25 * x * x)
-    return 0.5 + 0.75 * u * (1 - u * u / 3)
-
-
-def table(index: int) -> list[int]:
-    """Give where the symbols of a class begin, and 2^16."""
-    sigma = 1 / 8
-    for _ in range(index):
+@cache
+def table(number: int) -> list[int]:
+    """Tables: give where the interval of each symbol of a class ends."""
+    sigma = 0.125
+    for _ in range(number):
         sigma *= math.sqrt(math.sqrt(2))
-    sizes = [0]
-    for symbol in range(1, 64):
-        first, bits = bucket(symbol // 2)
-        start = first + (0.5 if symbol % 2 else -0.5)
-        share = cumulative(-start / sigma) - cumulative(-(start + 2**bits) / sigma)
-        sizes.append(2 + int(65408 * share) if symbol < 2 * FAR else 2)
-    sizes[0] = 2**16 - sum(sizes)
-    return [sum(sizes[:symbol]) for symbol in range(65)]
+    sizes = []
+    for a, k in BUCKETS:
+        for h in (-0.5, 0.5):
+            share = student(-(a + h) / sigma) - student(-(a + h + 2**k) / sigma)
+            sizes.append(2 + int(65408 * share))
+    sizes += [2] * 4
+    return list(accumulate([2**16 - sum(sizes[1:]), *sizes[1:]]))
 
 
-TABLES = [table(index) for index in range(24)]
-
-
-def distance(stream: Intervals, scale: int) -> int | None:
-    """Take how many steps a number is from its prediction; none where it follows by itself."""
-    quarters = min(max(scale + 32 >> 6, -FIRST_CLASS), 200)
-    shift = (quarters - 12) // 4 + 1 if quarters >= 12 else 0
-    starts = TABLES[quarters - 4 * shift + FIRST_CLASS]
-    symbol = next(s for s in range(64) if stream.slot() < starts[s + 1])
-    stream.take(starts[symbol], starts[symbol + 1] - starts[symbol])
-    if symbol >= 2 * FAR + 2:
-        return None
-    if symbol >= 2 * FAR:
-        away = stream.raw(stream.uniform(64))
-    else:
-        first, bits = bucket(symbol // 2)
-        away = (first << shift) + stream.raw(bits + shift)
-    return -1 - away if symbol % 2 else away
-
-
-class Fit:
-    """What a channel's bend is expected to be from other bends."""
-
-    def __init__(self, inputs: int, fading: float) -> None:
-        self.fading = fading
-        self.scales = [1e-4] * inputs
-        self.factors = [[0.0] * (inputs + 1) for _ in range(inputs)]
-        self.weights = [0.0] * inputs
-
-    def learn(self, values: list[float]) -> None:
-        """Learn from the inputs and, last, what they explain."""
-        alpha, last = 1.0, len(self.weights)
-        for j, factors in enumerate(self.factors):
-            faded = self.fading * self.scales[j]
-            grown = faded + alpha * (values[j] * values[j])
-            ratio = alpha / (grown + TINY)
-            gain = ratio * values[j]
-            alpha = ratio * (faded + TINY)
-            self.scales[j] = grown
-            for i in range(j + 1, last + 1):
-                values[i] -= values[j] * factors[i]
-                factors[i] += gain * values[i]
-        for j in reversed(range(last)):
-            weight = self.factors[j][last]
-            for i in reversed(range(j + 1, last)):
-                weight -= self.factors[j][i] * self.weights[i]
-            self.weights[j] = weight
-
-
-class Ruler:
-    """A line as whole steps, those of the decade of the last number."""
-
-    def __init__(self, column: "Column") -> None:
-        self.line, self.kind, self.unit = column.line, column.line.kind, column.unit
-        self.negative, self.nonzero = Bit(), Bit()
-        self.base, self.digits, self.lowest, self.origin = 10, self.line.digits, -307, 1
-        self.least, self.most = self.digits - 23, self.digits + 21
-        if self.line.bits:
-            self.base, self.origin = 2, 0
-            self.digits, self.lowest = (53, -1023) if self.kind == FLOAT64 else (24, -127)
-            self.least, self.most = (-900, 900) if self.kind == FLOAT64 else (-126, 127)
-        self.first = 1 if self.kind == DECIMALS else self.base ** (self.digits - 1)
-        self.reach(0.0)
-
-    def reach(self, magnitude: float) -> None:
-        """Take the step near a level."""
-        number = min(magnitude / self.unit, 1e300)
-        if self.line.printed:
-            self.step = self.line.step(number) * self.unit
-        elif self.kind == DECIMALS:
-            self.last = -self.digits
-        else:
-            decade = self.least
-            if number >= 1e-300:
-                binary = (bits64(number) >> 52) - 1023
-                decade = decade_of_number(number) if self.base == 10 else binary
-            self.decade = min(max(decade, self.least), self.most)
-            self.last = self.decade - self.digits + 1
-        if not self.line.printed:
-            if self.base == 2:
-                self.step = self.unit * 2.0**self.last
-            elif self.last < 0 or self.kind == DECIMALS:
-                self.step = self.unit / power_of_ten(-self.last)
-            else:
-                self.step = self.unit * power_of_ten(self.last)
-        self.step = max(self.step, 1e-300)
-
-    def near(self, predicted: float) -> int:
-        """Give the steps nearest to a prediction."""
-        if self.line.printed:
-            place = max(self.line.near(abs(predicted) / self.unit), 0)
-            return -place if predicted < 0 else place
-        steps = predicted * (1 / self.step)
-        return int(steps + math.copysign(0.5, steps)) if abs(steps) < 2**60 else 0
-
-    def finish(self, stream: Intervals, steps: int) -> tuple[float, float]:
-        """Give the number so many steps from 0, and its level."""
-        marks, negative = abs(steps), steps < 0
-        whole = not self.line.printed and self.kind != SHORTEST32
-        if marks >= self.first and whole:
-            return self._number(steps), steps * self.step
-        at = marks
-        if marks == 0:
-            negative = stream.bit(self.negative)
-            if stream.bit(self.nonzero):
-                at = stream.raw(stream.uniform(64))
-        elif not self.line.printed:
-            decade, part = self.decade, 1
-            while marks < self.first:
-                marks, decade, part = marks * self.base, decade - 1, part * self.base
-            while part > 1:
-                unit = min(part, 1000 if self.base == 10 else 1024)
-                part //= unit
-                marks += stream.uniform(unit) * part
-            while marks >= self.first * self.base:
-                marks, decade = marks // self.base, decade + 1
-            per_decade = self.first * (self.base - 1)
-            at = self.origin + (decade - self.lowest) * per_decade + marks - self.first
-        number = self.line.number(-1 - at if negative else at)
-        return number, number * self.unit
-
-    def _number(self, steps: int) -> float:
-        if self.base == 2:
-            return steps * 2.0**self.last
-        if self.last < 0 or self.kind == DECIMALS:
-            return steps / power_of_ten(-self.last)
-        return steps * power_of_ten(self.last)
+def grid(line: Line) -> tuple[int, int, int, int]:
+    """Give base, digits n, and bounds of the decade ("Steps")."""
+    if line.kind == DECIMALS:
+        return 10, 1, -line.digits, -line.digits
+    if line.kind == SIGNIFICANT:
+        return 10, line.digits, line.digits - 23, line.digits + 21
+    return (2, 53, -900, 900) if line.kind == FLOAT64 else (2, 24, -126, 127)
 
 
 class Channel:
-    """A column, and how far off its predictions were."""
+    """A predicted column."""
 
-    def __init__(self, column: "Column", own: int, others: int, fading: float) -> None:
-        self.ruler, self.fit = Ruler(column), Fit(own + others, fading)
+    def __init__(self, column: Column, before: list["Channel"], level: int) -> None:
+        """Take the channels before it in a row."""
+        own, others, self.fading = INPUTS[level]
+        self.line, self.unit, self.before = column.line, column.unit, before[-others:]
+        self.missing = [0.0] * (others - len(self.before))
         self.bends = [0.0] * own
-        """Of the frames before, oldest first."""
-        self.bend = self.level = self.expected = 0.0
+        """Of this row last."""
+        count = own + others
+        self.s, self.w = [1e-4] * count, [0.0] * count
+        self.f = [[0.0] * (count + 1) for _ in range(count)]
+        self.level = self.level_before = self.step = 0.0
         self.fast = self.slow = 0.25
+        self.negative, self.nonzero = Bit(), Bit()
+
+    def predict(self) -> float:
+        """Prediction."""
+        own = len(self.bends)
+        self.inputs = [*self.bends, *self.missing, *(c.bends[-1] for c in self.before)]
+        terms = [w * b for w, b in zip(self.w, self.inputs, strict=True)]
+        p = (self.level + (self.level - self.level_before)) + total(terms[:own])
+        for term in terms[own:]:
+            p += term
+        return cut(p, -1e12, 1e12)
+
+    def learn(self) -> None:
+        """Prediction: learn from a row."""
+        v, alpha, count = [*self.inputs, self.bends[-1]], 1.0, len(self.inputs)
+        for j, f in enumerate(self.f):
+            d = self.fading * self.s[j]
+            g = self.s[j] = d + alpha * (v[j] * v[j])
+            r = alpha / (g + 1e-13)
+            q = r * v[j]
+            alpha = r * (d + 1e-13)
+            for i in range(j + 1, count + 1):
+                v[i] -= v[j] * f[i]
+                f[i] += q * v[i]
+        for j in reversed(range(count)):
+            self.w[j] = self.f[j][count]
+            for i in range(count - 1, j, -1):
+                self.w[j] -= self.w[i] * self.f[j][i]
 
 
-def decode(payload: bytes, frames: int, columns: list["Column"], level: int) -> list[list[float]]:
-    """Give the rows of a chunk."""
-    own, others, fading = PLANS[level]
-    stream = Intervals(payload)
-    channels = [Channel(column, own, others, fading) for column in columns if not column.noise]
-    noise = [Noise(column.line, []) for column in columns if column.noise]
-    activity, rows = 0, []
-    for t in range(frames):
-        behind = [column.next(stream) for column in noise]
-        row = []
-        before = [0.0] * others
-        for channel in channels:
-            number, activity = next_number(stream, channel, before, activity, t)
-            row.append(number)
-            before = [*before[1:], channel.bend]
-        before = [0.0] * others
-        for channel in channels if t > 0 else []:
-            channel.fit.learn([*channel.bends, *before, channel.bend])
-            channel.bends = [*channel.bends[1:], channel.bend]
-            before = [*before[1:], channel.bend]
-        rows.append(row + behind)
-    stream.end()
+class Payload:
+    """A payload: its rows, one behind the other."""
+
+    def __init__(self, payload: bytes, columns: list[Column], level: int) -> None:
+        self.stream = Intervals(payload)
+        self.channels: list[Channel] = []
+        for column in columns:
+            if not column.noise:
+                self.channels.append(Channel(column, self.channels, level))
+        self.noises = [Noise(column.line, []) for column in columns if column.noise]
+        self.shared = 0
+        """A of the scale."""
+
+    def row(self, t: int) -> list[float]:
+        """Take a row."""
+        noise = [column.next(self.stream) for column in self.noises]
+        numbers = [self._later(c, t) if t > 0 else self._first(c) for c in self.channels]
+        for channel in self.channels if t > 0 else []:
+            channel.learn()
+        return numbers + noise
+
+    def _first(self, channel: Channel) -> float:
+        """Take a number of row 0."""
+        number, level = self._number(channel, 0.0, 1024)
+        channel.level = channel.level_before = level
+        return number
+
+    def _later(self, channel: Channel, t: int) -> float:
+        """Scale: take a number of another row, and learn its scale."""
+        p, floor = channel.predict(), 0.3 * channel.step
+        mean = 5 * octaves(channel.fast + floor) + 3 * octaves(channel.slow + floor)
+        s = int(mean / 8) + self.shared // 512 - 70
+        s = min(max(s, -900 * 256), 900 * 256)
+        number, level = self._number(channel, p, s)
+        error, scale = abs(level - p), of_octaves(s)
+        far = min(error, 20 * scale)
+        channel.fast += max(1 / t, 0.25) * (far - channel.fast)
+        channel.slow += max(1 / t, 0.06) * (far - channel.slow)
+        x = min(max(octaves(error + 0.1 * scale) - s + 185, -768), 768)
+        self.shared += (256 * x - self.shared) // 8
+        bend = level - (channel.level + (channel.level - channel.level_before))
+        channel.bends = [*channel.bends[1:], bend]
+        channel.level, channel.level_before = level, channel.level
+        return number
+
+    def _number(self, channel: Channel, p: float, s: int) -> tuple[float, float]:
+        """Take a number; give it and its level ("Steps")."""
+        line, unit = channel.line, channel.unit
+        size, exponent = (abs(p) + of_octaves(s)) / unit, 0
+        if line.printed:
+            channel.step = max(line.step(size) * unit, 1e-300)
+            n = line.near(p / unit)
+            n += n < 0
+        else:
+            base, digits, least, greatest = grid(line)
+            decade = decade_of_number(size) if base == 10 else (bits64(size) >> 52) - 1023
+            exponent = min(max(decade, least), greatest) - digits + 1
+            power = power_of_ten(abs(exponent)) if base == 10 else 2.0 ** abs(exponent)
+            channel.step = max(unit / power if exponent < 0 else unit * power, 1e-300)
+            near = p * (1 / channel.step)
+            n = rounded_away(near) if abs(near) < 2.0**60 else 0
+        d = self._difference(s - octaves(channel.step))
+        if d is None:
+            number = of_bits64(self.stream.raw(64))
+            level = number * unit
+        else:
+            number, level = self._of_steps(channel, n + d, exponent)
+        return number, cut(level if math.isfinite(level) else p, -1e12, 1e12)
+
+    def _difference(self, above: int) -> int | None:
+        """Tables: take D; None where the double follows."""
+        q = min(max((above + 32) // 64, -12), 200)
+        shift = (q - 12) // 4 + 1 if q >= 12 else 0
+        ends = table(q - 4 * shift + 12)
+        symbol = bisect_right(ends, self.stream.slot())
+        start = ends[symbol - 1] if symbol else 0
+        self.stream.take(start, ends[symbol] - start)
+        bucket, negative = divmod(symbol, 2)
+        if symbol == 63:
+            return None
+        if bucket < len(BUCKETS):
+            a, k = BUCKETS[bucket]
+            size = (a << shift) + self.stream.raw(shift + k)
+        else:
+            size = self.stream.raw(self.stream.uniform(64))
+        return -1 - size if negative else size
+
+    def _of_steps(self, channel: Channel, k: int, exponent: int) -> tuple[float, float]:
+        """From k to the number: give it and its level."""
+        line, unit, size, sign = channel.line, channel.unit, abs(k), -1.0 if k < 0 else 1.0
+        if k == 0:
+            sign = -1.0 if self.stream.bit(channel.negative) else 1.0
+            if self.stream.bit(channel.nonzero):
+                size = self.stream.raw(self.stream.uniform(64))
+        if k == 0 or line.printed:
+            number = sign * line.number(size)
+            return number, number * unit
+        base, digits, _, _ = grid(line)
+        lacking = 0
+        while size * base**lacking < base ** (digits - 1):
+            lacking += 1
+        for at in range(0, lacking, 10 if base == 2 else 3):
+            share = base ** min(lacking - at, 10 if base == 2 else 3)
+            size = size * share + self.stream.uniform(share)
+        exponent -= lacking
+        number = math.ldexp(size, exponent) if base == 2 else float(f"{size}e{exponent}")
+        if line.kind == SHORTEST32:
+            number = rounded(number, "shortest32", 0)
+        elif lacking == 0:
+            return sign * number, k * channel.step
+        return sign * number, sign * number * unit
+
+
+def decode(payload: bytes, frames: int, columns: list[Column], level: int) -> list[list[float]]:
+    """Give the coded columns of a payload, row by row."""
+    told = Payload(payload, columns, level)
+    rows = [told.row(t) for t in range(frames)]
+    told.stream.end()
     return rows
-
-
-def next_number(
-    stream: Intervals, channel: Channel, before: list[float], activity: int, t: int
-) -> tuple[float, int]:
-    """Take the number of a channel in row t; give it and the activity behind it."""
-    ruler, own = channel.ruler, len(channel.bends)
-    told = 0.0
-    for weight, bend in zip(channel.fit.weights, channel.bends, strict=False):
-        told += weight * bend
-    predicted = channel.expected + told
-    for weight, bend in zip(channel.fit.weights[own:], before, strict=True):
-        predicted += weight * bend
-    predicted = bounded(predicted)
-    log_scale = 4 * 256
-    if t > 0:
-        floor = 0.3 * ruler.step
-        errors = 5 * octaves(channel.fast + floor) + 3 * octaves(channel.slow + floor)
-        usual = errors // 8 if errors >= 0 else -(-errors // 8)
-        log_scale = min(max(usual + (activity >> 9) - 70, -900 * 256), 900 * 256)
-    scale = of_octaves(log_scale)
-    ruler.reach(abs(predicted) + scale)
-    near = ruler.near(predicted)
-    off = distance(stream, log_scale - octaves(ruler.step))
-    if off is None:
-        number = of_bits64(stream.raw(64))
-        level = number * ruler.unit
-    else:
-        number, level = ruler.finish(stream, near + off)
-    level = bounded(level) if math.isfinite(level) else predicted
-    if t > 0:
-        error = abs(level - predicted)
-        size = min(error, 20 * scale)
-        channel.fast += max(0.25, 1 / t) * (size - channel.fast)
-        channel.slow += max(0.06, 1 / t) * (size - channel.slow)
-        more = octaves(error + 0.1 * scale) - log_scale + 185
-        activity += 256 * min(max(more, -768), 768) - activity >> 3
-    channel.bend = level - channel.expected if t > 0 else 0.0
-    channel.expected = level + (level - channel.level) if t > 0 else level
-    channel.level = level
-    return number, activity

@@ -1,164 +1,226 @@
-"""Levels 3 to 9 of ``exact``: the model of a clip, or of 1024 of its columns."""
+"""Channels of ``exact`` at levels 3 to 9 (docs/format/exact.md)."""
 
-from typing import TYPE_CHECKING
+import math
+from itertools import islice
 
-from exact_blend import Blend, Spread, Turns
-from exact_experts import Frames, experts
-from exact_lawful import Lawful
-from exact_noise import Noise
-from exact_residual import Residual
-from exact_skeleton import Skeleton
+from exact_coding import Coding, Noise
+from exact_experts import Blend, make_experts
+from exact_functions import cut, exp, ln, rounded_away, total
+from exact_header import Column, Coupling
+from exact_laws import Law, make_law
+from exact_skeleton import Levels, Skeleton
 from streams import Bit, Coded
 
-if TYPE_CHECKING:
-    from exact import Column, Coupling
+
+class Told:
+    """Laws as predictions: what a law or a joint tells about one of its targets."""
+
+    def __init__(self, coupling: Coupling, target: int, law: Law, levels: Levels) -> None:
+        """Take which of the targets it is, and the law, which they share."""
+        self.coupling, self.target, self.law, self.levels = coupling, target, law, levels
+        self.channel = coupling.targets[target]
+        self.frames, self.t, self.m = 0, 0.0, 0.0
+        self.errors = [0.0] * 4
+
+    def predict(self) -> list[float]:
+        """Give three moves."""
+        last = self.levels.past[self.channel][1]
+        t = self._angle(self.levels.number(self.channel, 1)) * self.levels.units[self.channel]
+        a = t - last
+        m = last - self.t if self.frames > 0 else 0.0
+        b = a + m
+        third = b + (m - self.m) if self.frames > 1 else b
+        self.t, self.m, self.frames = t, m, self.frames + 1
+        return [a, b, third]
+
+    def _angle(self, before: float) -> float:
+        """Give the angle next to the one before."""
+        sources = [cut(self.levels.number(c, 0), -1e5, 1e5) for c in self.coupling.sources]
+        known = [self.levels.number(c, 0) for c in self.coupling.targets[: self.target]]
+        told = [without_turns(x, before) for x in self.law(self.target, sources, known)]
+        return min(told, key=lambda x: abs(x - before), default=before)
+
+    def choose(self, moves: list[float]) -> float:
+        """Choice: take one of the law's moves and the blend's."""
+        self.moves = moves
+        return moves[self.errors.index(min(self.errors))]
+
+    def learn(self, e: float, scale: float) -> None:
+        """Choice: learn from the move that was right."""
+        for i, p in enumerate(self.moves):
+            self.errors[i] += 0.1 * (min(abs(e - p), 20 * scale) - self.errors[i])
+
+
+def without_turns(angle: float, before: float) -> float:
+    """Laws as predictions: take whole turns from an angle."""
+    k = (before - angle) / 360
+    return angle + 360 * rounded_away(k) if abs(k) < 1e5 else before
+
+
+class Spread:
+    """Spread: how far numbers of a channel are from their predictions."""
+
+    def __init__(self) -> None:
+        self.weights = [-0.1, 0.4, 0.2, 0.5, 0.15, 0.03]
+        self.means, self.last, self.count = [0.0] * 3, 0.0, 0
+
+    def next(self, doubt: float, floor: float, activity: float) -> float:
+        """Give the spread."""
+        self.value = 1000 * floor
+        if self.count > 0:
+            fast, middle, slow = self.means
+            s = m = ln(middle + floor)
+            near = [cut(ln(x + floor) - m, -3.0, 3.0) for x in (fast, slow, doubt)]
+            self.features = [1.0, near[0], near[1], activity, near[2], self.last]
+            for weight, feature in zip(self.weights, self.features, strict=True):
+                s += weight * feature
+            self.value = max(exp(cut(s, -600.0, 600.0)), 0.2 * floor)
+        return self.value
+
+    def learn(self, error: float, activity: float) -> float:
+        """Learn from an error; give the activity of all channels behind it."""
+        rho, z = error / self.value, abs(error)
+        if self.count > 0:
+            g = cut(5 * (rho * rho) / (4 + rho * rho) - 1, -2.0, 2.0)
+            for i, feature in enumerate(self.features):
+                self.weights[i] = cut(self.weights[i] + (0.003 * g) * feature, -4.0, 4.0)
+            self.last = cut(ln(abs(rho) + 0.1) + 0.5, -2.0, 3.0)
+            activity += 0.15 * (self.last - activity)
+            z = min(z, 20 * self.value)
+        self.count += 1
+        for i, rate in enumerate((0.4, 0.12, 0.03)):
+            self.means[i] += max(rate, 1 / self.count) * (z - self.means[i])
+        return activity
 
 
 class Channel:
-    """A predicted column."""
+    """A channel: what is kept of it from frame to frame."""
 
-    def __init__(self, column: "Column", law: Lawful | None, usual: int, memories: int) -> None:
-        self.line, self.unit, self.law = column.line, column.unit, law
-        self.sure = law is not None and law.joint is not None
-        self.turns = Turns(column.turns) if column.turns else None
-        self.across = [Bit() for _ in range(32)]
-        count = usual + (3 if law else 0)
-        first, end = (usual, usual + 1) if self.sure else (0, usual)
-        self.blend = Blend(count, first, end, memories)
-        self.spread = Spread()
-        self.errors = [0.0] * 4
-        """Of the law's predictions and the blend."""
-        self._begin_with(column.start)
+    def __init__(
+        self, column: Column, told: Told | None, count: int, level: int, chances: list[int]
+    ) -> None:
+        """Take how many experts predict it, and the chances of its buckets."""
+        self.column, self.told, self.chances = column, told, chances
+        self.joint = told.coupling.joint if told else None
+        self.law = None if self.joint else told
+        self.blend, self.spread = Blend(count + (3 if told else 0), level), Spread()
+        self.low = {0: 0.0, 1: -180.0, 2: 0.0}[column.turns]
+        self.edges = [Bit() for _ in range(32)]
 
-    def _begin_with(self, start: list[float]) -> None:
-        chains = [len(chain.numbers()) for chain in self.blend.chains]
-        if len(start) != 6 + sum(chains) + (4 if self.law else 0):
-            return
-        self.spread.weights = start[:6]
-        at = 6
-        for chain, size in zip(self.blend.chains, chains, strict=True):
-            chain.take(start[at : at + size])
-            at += size
-        if self.law:
-            self.errors = start[at:]
+    def begin(self, learned: list[float]) -> None:
+        """Model: begin with the list of the column, if it is as long as it must be."""
+        chains = self.blend.chains
+        lists = [self.spread.weights]
+        for chain in chains:
+            lists += [*chain.triangle, chain.d]
+        lists += [self.told.errors] if self.told else []
+        numbers = iter(learned)
+        if len(learned) == sum(map(len, lists)):
+            for numbers_of in lists:
+                numbers_of[:] = islice(numbers, len(numbers_of))
+
+    def turns(self, q: float) -> float:
+        """Whole turns: give those of a prediction."""
+        return 360 * whole((q - self.low) / 360) if self.column.turns else 0.0
+
+    def edge(self, coding: Coding, i: float, width: float) -> float:
+        """Whole turns: give the one more, if the number lies behind an edge of the range."""
+        a = (i if i < 180 else 360 - i) / width
+        if self.column.turns and a < 16 and coding.stream.bit(self.edges[max(int(2 * a), 0)]):
+            return -360 if i < 180 else 360
+        return 0.0
 
 
-class Model:
-    """What is known of the frames so far."""
+def whole(x: float) -> float:
+    """Whole turns: round down; 0 for large numbers."""
+    return math.floor(x) if abs(x) < 1e5 else 0.0
+
+
+class Part:
+    """A part of the columns."""
 
     def __init__(
         self,
         stream: Coded,
-        columns: list["Column"],
-        couplings: list["Coupling"],
         level: int,
-        shared: list[float],
+        columns: list[Column],
+        couplings: list[Coupling],
+        known: bool,
+        lists: dict[int, list[float]],
     ) -> None:
+        """Take whether the skeleton is known, and the lists of the model."""
         self.stream = stream
-        self.noise = [Noise(column.line, column.start) for column in columns if column.noise]
-        columns = [column for column in columns if not column.noise]
-        self.experts = experts(columns, couplings, level)
-        self.by_channel = [
-            [expert for expert in self.experts if c in expert.targets] for c in range(len(columns))
+        self.coding = Coding(stream, lists.get(-1, []))
+        predicted = [column for column in columns if not column.noise]
+        places = [column.place for column in predicted]
+        self.levels, self.activity = Levels([column.unit for column in predicted]), 0.0
+        self.skeleton = Skeleton(places, self.levels) if known and level > 7 else None
+        told: dict[int, Told] = {}
+        for one in couplings:
+            if one.kind > 0:
+                law = one.joint.tell if one.joint else make_law(one.kind)
+                told |= {c: Told(one, i, law, self.levels) for i, c in enumerate(one.targets)}
+        polynomials = [(one.sources, one.targets) for one in couplings if one.kind == 0]
+        self.experts = make_experts(level, self.levels, places, self.skeleton, polynomials)
+        self.experts_of = [
+            [one for one in self.experts if c in one.targets] for c in range(len(predicted))
         ]
-        laws: dict[int, Lawful] = {}
-        for coupling in couplings:
-            if coupling.kind != 0:
-                laws.update(dict.fromkeys(coupling.targets, Lawful(coupling, columns)))
-        self.channels = [
-            Channel(column, laws.get(c), len(self.by_channel[c]), 3 if level >= 8 else 1)
-            for c, column in enumerate(columns)
-        ]
-        self.skeleton = None
-        if level >= 8 and any(column.place is not None for column in columns):
-            self.skeleton = Skeleton(columns)
-        self.residual = Residual(stream, len(columns), shared)
-        self.frames = Frames(len(columns))
-        self.activity = 0.0
-        self.first = True
+        self.channels = []
+        for c, column in enumerate(predicted):
+            chances = list(self.coding.slow)
+            channel = Channel(column, told.get(c), len(self.experts_of[c]), level, chances)
+            channel.begin(lists.get(column.place, []))
+            self.channels.append(channel)
+        noise = [column for column in columns if column.noise]
+        self.noises = [Noise(column.line, lists.get(column.place, [])) for column in noise]
 
-    def next_frame(self) -> list[float]:
-        """Take a row of numbers."""
-        behind = [noise.next(self.stream) for noise in self.noise]
-        self.frames.next()
-        if self.first or self.stream.chance(65512):
-            row = [self._next_first(c) for c in range(len(self.channels))]
-            self.first = False
-            return row + behind
-        for expert in self.experts:
-            expert.begin()
+    def frame(self, *, first: bool) -> list[float]:
+        """Payload: take a frame."""
+        noise = [column.next(self.stream) for column in self.noises]
+        if first or self.stream.chance(65512):
+            numbers = [self.coding.first(channel.column.line) for channel in self.channels]
+            for past, x, unit in zip(self.levels.past, numbers, self.levels.units, strict=True):
+                past[:] = [level_of(x, unit)] * 5
+            return numbers + noise
+        for past in self.levels.past:
+            past[1:] = past[:4]
         if self.skeleton:
-            self.skeleton.begin(self.frames)
-        row = [self._next(c) for c in range(len(self.channels))]
+            self.skeleton.next_frame()
+        numbers = [self._number(c) for c in range(len(self.channels))]
         for expert in self.experts:
-            expert.learn(self.frames)
-        return row + behind
+            expert.learn()
+        return numbers + noise
 
-    def _next_first(self, c: int) -> float:
-        number = self.residual.next_first(self.channels[c].line)
-        for row in self.frames.rows:
-            row[c] = self._level(c, number)
-        return number
-
-    def _next(self, c: int) -> float:
-        channel, frames = self.channels[c], self.frames
-        law, last = channel.law, frames.level(c, 1)
-        if self.skeleton:
-            frames.guesses[c] = self.skeleton.guess(c, frames)
-        usual = [expert.predict(c, frames) - last for expert in self.by_channel[c]]
-        lawful = law.predict(c, frames) if law else []
-        blended = channel.blend.predict(usual + lawful)
-        choices: list[float] = []
-        if law and not channel.sure:
-            choices = [*lawful, blended]
-            blended = choices[channel.errors.index(min(channel.errors))]
-        expected = bounded(last + blended) / channel.unit
-        turned = channel.turns.left(expected) if channel.turns else 0.0
-        step = channel.line.step(expected - turned) * channel.unit
-        loose = law.looseness if law else 1.0
-        if channel.sure:
-            doubt = loose * step
-        else:
-            doubt = 0.0
-            for prediction in usual:
-                doubt += abs(prediction - blended)
-            doubt /= len(usual)
+    def _number(self, c: int) -> float:
+        """Take the number of a channel ("A channel")."""
+        channel, past, unit = self.channels[c], self.levels.past[c], self.levels.units[c]
+        line, last = channel.column.line, past[1]
+        moves = [expert.predict(c) - last for expert in self.experts_of[c]]
+        told = channel.told.predict() if channel.told else []
+        mean = told[0] if channel.joint else total(moves) / len(moves)
+        p = channel.blend.mix(moves + told, mean)
+        if channel.law:
+            p = channel.law.choose([*told, p])
+        q = cut(last + p, -1e6, 1e6) / unit
+        w = channel.turns(q)
+        step = line.step(q - w) * unit
+        loose = channel.joint.loose if channel.joint else 1.0
+        doubt = loose * step if channel.joint else total(abs(x - p) for x in moves) / len(moves)
         floor = (0.1 * step + 1e-9) / loose
-        scale = loose * channel.spread.expect(doubt / loose, floor, self.activity)
-        width = (scale + 0.15 * step) / channel.unit
-        if channel.turns:
-            turned = self._turned(channel, expected, turned, width)
-        number = self.residual.next(c, channel.line, expected - turned, width)
-        whole = number
-        if channel.turns:
-            whole = number + channel.turns.since(last / channel.unit, number)
-        level = self._level(c, whole)
-        error = level - last
-        channel.blend.learn(error, scale + step)
-        for i, choice in enumerate(choices):
-            off = min(abs(error - choice), 20 * (scale + step))
-            channel.errors[i] += 0.1 * (off - channel.errors[i])
-        self.activity = channel.spread.learn((error - blended) / loose, self.activity)
-        frames.rows[0][c] = level
-        return number
-
-    def _turned(self, channel: Channel, expected: float, turned: float, width: float) -> float:
-        """Tell what to take from a prediction: the turns that it has left, but for the edges."""
-        assert channel.turns
-        within = expected - turned - channel.turns.lowest
-        low = within < 180
-        scales = (within if low else 360 - within) / width
-        if not scales < 16:
-            return turned
-        if self.stream.bit(channel.across[int(2 * scales) if scales > 0 else 0]):
-            return turned + (-360 if low else 360)
-        return turned
-
-    def _level(self, c: int, number: float) -> float:
-        level = number * self.channels[c].unit
-        return bounded(level) if level == level else 0.0
+        scale = loose * channel.spread.next(doubt / loose, floor, self.activity)
+        width = (scale + 0.15 * step) / unit
+        w += channel.edge(self.coding, q - w - channel.low, width)
+        x = self.coding.beside(line, channel.chances, q - w, width)
+        since = 360 * whole((last / unit - x) / 360 + 0.5) if channel.column.turns else 0.0
+        past[0] = level_of(x + since, unit)
+        e = past[0] - last
+        channel.blend.learn(e, scale + step)
+        if channel.law:
+            channel.law.learn(e, scale + step)
+        self.activity = channel.spread.learn((e - p) / loose, self.activity)
+        return x
 
 
-def bounded(level: float) -> float:
-    """Keep a level within 10^6."""
-    return level if -1e6 < level < 1e6 else 1e6 if level >= 1e6 else -1e6
+def level_of(x: float, unit: float) -> float:
+    """Levels: the level of a number."""
+    return 0.0 if x != x else cut(x * unit, -1e6, 1e6)

@@ -1,246 +1,188 @@
-"""What the geometry of a known skeleton says about the channels of a frame."""
+"""The guesses of a known skeleton (docs/format/exact_functions.md, "The known skeleton")."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from exact_arithmetic import (
+from exact_functions import (
     DEGREE,
+    UNIT,
+    Matrix,
     Vector,
-    combined,
+    applied,
     cross,
+    cut,
     dot,
-    scaled,
-    sine_cosine_of_degrees,
+    plus,
+    product,
+    sine_cosine,
+    times,
+    transposed,
+    turned,
 )
 from tables import numbers
 
-if TYPE_CHECKING:
-    from exact import Column
-    from exact_experts import Frames
+BONES = 29
+ZERO: Vector = (0.0, 0.0, 0.0)
+TABLE = numbers("skeleton_cmu_1")
+# Of each channel bone, limb and resistance.
+CHANNELS = [TABLE[at : at + 3] for at in range(18 * BONES, len(TABLE), 3)]
+LIMBS = [limb for _, limb, _ in CHANNELS]
 
-BONES, BONE_NUMBERS = 29, 18
 
-Matrix = list[Vector]
+class Levels:
+    """Levels of the channels, in this frame and those before (docs/format/exact.md, "Levels")."""
+
+    def __init__(self, units: list[float]) -> None:
+        """Take 2^exponent of each channel."""
+        self.units = units
+        self.past = [[0.0] * 5 for _ in units]
+        """L(c, 0) to L(c, 4)."""
+
+    def difference(self, order: int, c: int, a: int) -> float:
+        """Give L, D1 or D2 of (c, a)."""
+        if order == 0:
+            return self.past[c][a]
+        return self.difference(order - 1, c, a) - self.difference(order - 1, c, a + 1)
+
+    def number(self, c: int, a: int) -> float:
+        """Give a level as a number of the clip."""
+        return self.past[c][a] / self.units[c]
 
 
 @dataclass
 class Bone:
-    """A bone of the skeleton."""
+    """A bone of the data file."""
 
     parent: int
+    axis: list[float]
     start: Vector
     end: Vector
-    channels: list[int]
-    """Of tx to rz: place among the skeleton's channels, or -1."""
+    places: list[float]
+    """Of tx ty tz rx ry rz among the channels, or -1."""
     mass: float
     inertia: float
-    axes: Matrix
-    """Its frame at rest, C."""
-
-
-@dataclass
-class Pose:
-    """Bones as the root's joint sees them."""
-
-    turns: list[Matrix]
-    ends: list[Vector]
 
 
 @dataclass
 class Body:
-    """A bone with all that hangs on it, and what pushes it."""
+    """Bodies: what moves with a bone."""
 
     mass: float
-    moment: Vector
-    tensor: list[float]
-    """xx yy zz xy xz yz."""
     force: Vector
     torque: Vector
+    moment: Vector
+    tensor: Matrix
 
-
-@dataclass
-class Channel:
-    """A channel of the clip that is one of the skeleton's."""
-
-    column: int
-    unit: float
-    place: int
-    bone: int
-    resistance: float
-    before: list[int]
-    """The channels before it that move its bone, too."""
-
-
-def bones() -> list[Bone]:
-    """Read the bones of the CMU skeleton."""
-    found = []
-    table = numbers("skeleton_cmu_1")
-    for b in range(BONES):
-        row = table[BONE_NUMBERS * b : BONE_NUMBERS * (b + 1)]
-        axes: Matrix = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
-        for axis in (2, 1, 0):
-            turn(axes, axis, row[1 + axis])
-        start, end = (row[4], row[5], row[6]), (row[7], row[8], row[9])
-        places = [int(place) for place in row[10:16]]
-        found.append(Bone(int(row[0]), start, end, places, row[16], row[17], axes))
-    return found
-
-
-def channels() -> list[tuple[int, int, float]]:
-    """Read bone, limb and resistance of each of its channels."""
-    table = numbers("skeleton_cmu_1")[BONES * BONE_NUMBERS :]
-    return [(int(table[i]), int(table[i + 1]), table[i + 2]) for i in range(0, len(table), 3)]
-
-
-def plus(a: Vector, b: Vector) -> Vector:
-    """Give a + b."""
-    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
-
-
-def product(a: Matrix, b: Matrix) -> Matrix:
-    """Give the product of two matrices."""
-    return [combined((a[0], a[1], a[2]), column) for column in b]
-
-
-def transposed(m: Matrix) -> Matrix:
-    """Give the rows of a matrix as columns."""
-    x, y, z = m
-    return [(x[0], y[0], z[0]), (x[1], y[1], z[1]), (x[2], y[2], z[2])]
-
-
-def turn(m: Matrix, axis: int, degrees: float) -> None:
-    """Turn a frame about one of its own axes."""
-    sine, cosine = sine_cosine_of_degrees(degrees)
-    y, z = (axis + 1) % 3, (axis + 2) % 3
-    m[y], m[z] = (
-        plus(scaled(m[y], cosine), scaled(m[z], sine)),
-        plus(scaled(m[z], cosine), scaled(m[y], -sine)),
-    )
-
-
-def bounded(number: float) -> float:
-    """Keep a number within 10^5."""
-    return min(number, 1e5) if number > -1e5 else -1e5
+    def add(self, other: "Body") -> None:
+        """Add what hangs on the bone."""
+        self.mass += other.mass
+        self.force = plus(self.force, other.force)
+        self.torque = plus(self.torque, other.torque)
+        self.moment = plus(self.moment, other.moment)
+        self.tensor = tuple(map(plus, self.tensor, other.tensor))
 
 
 class Skeleton:
-    """The guesses for the channels of a clip."""
+    """The skeleton of a clip, of which some columns are channels."""
 
-    def __init__(self, columns: list["Column"]) -> None:
-        self.bones = bones()
-        self.channels: list[Channel] = []
-        self.of_column: dict[int, int] = {}
-        for c, column in enumerate(columns):
-            assert column.place is not None
-            bone, _, resistance = channels()[column.place]
-            before = [i for i, own in enumerate(self.channels) if self._moves(own.bone, bone)]
-            self.of_column[c] = len(self.channels)
-            self.channels.append(Channel(c, column.unit, column.place, bone, resistance, before))
+    def __init__(self, columns: list[int], levels: Levels) -> None:
+        """Take the column of each channel."""
+        self.levels = levels
+        self.channel = {column: c for c, column in enumerate(columns)}
+        self.bones = [
+            Bone(int(n[0]), n[1:4], tuple(n[4:7]), tuple(n[7:10]), n[10:16], n[16], n[17])
+            for n in (TABLE[at : at + 18] for at in range(0, 18 * BONES, 18))
+        ]
+        self.bone_of = [int(CHANNELS[column][0]) for column in columns]
+        self.resistance = [CHANNELS[column][2] for column in columns]
+        self.before = [
+            [j for j in range(k) if self.bone_of[j] in self._path(bone)]
+            for k, bone in enumerate(self.bone_of)
+        ]
 
-    def _moves(self, bone: int, other: int) -> bool:
-        while other > bone:
-            other = self.bones[other].parent
-        return other == bone
+    def _path(self, bone: int) -> list[int]:
+        """Give a bone and those from which it hangs."""
+        return [] if bone < 0 else [bone, *self._path(self.bones[bone].parent)]
 
-    def begin(self, frames: "Frames") -> None:
-        """Begin a frame."""
-        earlier, last, expected = ([0.0] * len(channels()) for _ in range(3))
-        for channel in self.channels:
-            level = frames.level(channel.column, 1)
-            move = frames.difference(channel.column, 1, 1)
-            earlier[channel.place] = bounded((level - move) / channel.unit)
-            last[channel.place] = bounded(level / channel.unit)
-            expected[channel.place] = bounded((level + move) / channel.unit)
-        poses = [self._pose(numbers) for numbers in (earlier, last, expected)]
-        bodies = self._bodies(*poses)
-        rows, pushes = [], []
-        for channel in self.channels:
-            v, w = self.twists[channel.place]
-            body = bodies[channel.bone]
-            t = body.tensor
-            linear = plus(scaled(v, body.mass), cross(w, body.moment))
-            turned = (
-                t[0] * w[0] + t[3] * w[1] + t[4] * w[2],
-                t[3] * w[0] + t[1] * w[1] + t[5] * w[2],
-                t[4] * w[0] + t[5] * w[1] + t[2] * w[2],
-            )
-            angular = plus(cross(body.moment, v), turned)
-            twists = [self.twists[self.channels[i].place] for i in channel.before]
-            row = [dot(other[0], linear) + dot(other[1], angular) for other in twists]
-            rows.append([*row, dot(v, linear) + dot(w, angular) + channel.resistance])
-            pushes.append(dot(v, body.force) + dot(w, body.torque))
-        for k in reversed(range(len(rows))):
-            row, before = rows[k], self.channels[k].before
-            precision = max(row.pop(), 1e-12)
-            pushes[k] /= precision
-            for i, channel_before in enumerate(before):
-                share = row[i] / precision
-                earlier_row = rows[channel_before]
-                for j in range(i + 1):
-                    earlier_row[j] -= share * row[j]
-                pushes[channel_before] -= row[i] * pushes[k]
-            rows[k] = [entry / precision for entry in row]
-        self.rows, self.pushes = rows, pushes
+    def next_frame(self) -> None:
+        """Precision: do what a frame needs before its first guess."""
+        levels, poses = self.levels, []
+        for share in (-1.0, 0.0, 1.0):
+            moved = [p[1] + share * levels.difference(1, c, 1) for c, p in enumerate(levels.past)]
+            angles = [x / unit for x, unit in zip(moved, levels.units, strict=True)]
+            poses.append(self._pose([cut(angle, -1e5, 1e5) for angle in angles]))
+        bodies = self._bodies(poses)
+        self.g: list[float] = []
+        self.rows: list[list[float]] = []
+        for k, (v, w) in enumerate(self.twists):
+            body = bodies[self.bone_of[k]]
+            p = plus(times(v, body.mass), cross(w, body.moment))
+            q = plus(cross(body.moment, v), tuple(dot(row, w) for row in body.tensor))
+            earlier = [self.twists[j] for j in self.before[k]]
+            self.rows.append([dot(v_j, p) + dot(w_j, q) for v_j, w_j in earlier])
+            self.rows[k].append((dot(v, p) + dot(w, q)) + self.resistance[k])
+            self.g.append(dot(v, body.force) + dot(w, body.torque))
+        for k in reversed(range(len(self.g))):
+            row, d = self.rows[k], max(self.rows[k].pop(), 1e-12)
+            self.g[k] /= d
+            for place, j in enumerate(self.before[k]):
+                s = row[place] / d
+                for i in range(place + 1):
+                    self.rows[j][i] -= s * row[i]
+                self.g[j] -= row[place] * self.g[k]
+            self.rows[k] = [number / d for number in row]
 
-    def guess(self, column: int, frames: "Frames") -> float:
-        """Give the second difference that is to be expected of a column."""
-        k = self.of_column[column]
-        mean = self.pushes[k]
-        for share, i in zip(self.rows[k], self.channels[k].before, strict=True):
-            known = self.channels[i]
-            mean -= share * bounded(frames.difference(known.column, 2, 0) / known.unit)
-        return bounded(mean) * self.channels[k].unit
+    def guess(self, k: int) -> float:
+        """Guess the second difference of a channel; those before it are known."""
+        levels, guess = self.levels, self.g[k]
+        for j, factor in zip(self.before[k], self.rows[k], strict=True):
+            bend = levels.difference(2, j, 0) / levels.units[j]
+            guess -= factor * cut(bend, -1e5, 1e5)
+        return cut(guess, -1e5, 1e5) * levels.units[k]
 
-    def _pose(self, angles: list[float]) -> Pose:
-        pose = Pose([], [])
-        starts: list[Vector] = []
-        self.twists: dict[int, tuple[Vector, Vector]] = {}
-        """Of each channel, per degree or unit, at the pose that was taken last."""
+    def _pose(self, angles: list[float]) -> list[tuple[Matrix, Vector]]:
+        """Poses: give matrix and end of each bone; the twists of channels stay in ``twists``."""
+        self.twists: list[tuple[Vector, Vector]] = [(ZERO, ZERO) for _ in angles]
+        matrices, origins, ends = list[Matrix](), list[Vector](), list[Vector]()
         for bone in self.bones:
-            frame, start = list(bone.axes), (0.0, 0.0, 0.0)
+            axes = UNIT
+            for i in (2, 1, 0):
+                axes = turned_frame(axes, i, bone.axis[i])
+            frame, origin = axes, ZERO
             if bone.parent >= 0:
-                parent = pose.turns[bone.parent]
-                frame = product(parent, frame)
-                start = plus(
-                    starts[bone.parent], combined((parent[0], parent[1], parent[2]), bone.start)
-                )
-            for kind in reversed(range(6)):
-                place, axis = bone.channels[kind], kind % 3
-                if place < 0:
-                    continue
-                if kind < 3:
-                    unit = (float(axis == 0), float(axis == 1), float(axis == 2))
-                    self.twists[place] = unit, (0.0, 0.0, 0.0)
-                    continue
-                angular = scaled(frame[axis], DEGREE)
-                self.twists[place] = cross(start, angular), angular
-                turn(frame, axis, angles[place])
-            x, y, z = product(frame, transposed(bone.axes))
-            starts.append(start)
-            pose.turns.append([x, y, z])
-            pose.ends.append(plus(start, combined((x, y, z), bone.end)))
-        return pose
+                frame = product(matrices[bone.parent], axes)
+                origin = plus(origins[bone.parent], applied(matrices[bone.parent], bone.start))
+            for i, place in reversed(list(enumerate(bone.places))):
+                c = self.channel.get(int(place))
+                if c is not None and i < 3:
+                    self.twists[c] = UNIT[i], ZERO
+                elif c is not None:
+                    w = times(frame[i - 3], DEGREE)
+                    self.twists[c] = cross(origin, w), w
+                    frame = turned_frame(frame, i - 3, angles[c])
+            matrices.append(product(frame, transposed(axes)))
+            origins.append(origin)
+            ends.append(plus(origin, applied(matrices[-1], bone.end)))
+        return list(zip(matrices, ends, strict=True))
 
-    def _bodies(self, earlier: Pose, last: Pose, expected: Pose) -> list[Body]:
-        bodies = []
-        for b, bone in enumerate(self.bones):
-            m, end = bone.mass, expected.ends[b]
-            square = dot(end, end)
-            going = plus(scaled(last.ends[b], 2), scaled(earlier.ends[b], -1))
-            force = scaled(plus(going, scaled(end, -1)), m)
-            turning = product(last.turns[b], product(transposed(earlier.turns[b]), last.turns[b]))
-            x, y, z = (cross(a, c) for a, c in zip(expected.turns[b], turning, strict=True))
-            torque = plus(cross(end, force), scaled(scaled(plus(plus(x, y), z), 0.5), bone.inertia))
-            tensor = [
-                *(m * (square - end[i] * end[i]) + bone.inertia for i in range(3)),
-                *(-m * end[i] * end[j] for i, j in ((0, 1), (0, 2), (1, 2))),
-            ]
-            bodies.append(Body(m, scaled(end, m), tensor, force, torque))
-        for b in reversed(range(1, BONES)):
-            part, whole = bodies[b], bodies[self.bones[b].parent]
-            whole.mass += part.mass
-            whole.moment = plus(whole.moment, part.moment)
-            whole.tensor = [i + j for i, j in zip(whole.tensor, part.tensor, strict=True)]
-            whole.force = plus(whole.force, part.force)
-            whole.torque = plus(whole.torque, part.torque)
-        return bodies
+    def _bodies(self, poses: list[list[tuple[Matrix, Vector]]]) -> list[Body]:
+        """Bodies."""
+        found = []
+        for bone, (g_0, e_0), (g_1, e_1), (g_2, e) in zip(self.bones, *poses, strict=True):
+            force = times(plus(times(e_1, 2.0), times(e_0, -1.0), times(e, -1.0)), bone.mass)
+            h = product(g_1, product(transposed(g_0), g_1))
+            turn = times(plus(ZERO, *map(cross, g_2, h)), 0.5)
+            torque = plus(cross(e, force), times(turn, bone.inertia))
+            q, m = dot(e, e), bone.mass
+            tensor = [[(-m * e[min(i, j)]) * e[max(i, j)] for j in range(3)] for i in range(3)]
+            for i in range(3):
+                tensor[i][i] = m * (q - e[i] * e[i]) + bone.inertia
+            found.append(Body(m, force, torque, times(e, m), tuple(map(tuple, tensor))))
+        for bone, body in reversed(list(zip(self.bones[1:], found[1:], strict=True))):
+            found[bone.parent].add(body)
+        return found
+
+
+def turned_frame(m: Matrix, axis: int, degrees: float) -> Matrix:
+    """Poses: turn a frame about one of its axes, which is each row the other way round."""
+    sine, cosine = sine_cosine(degrees * DEGREE)
+    return transposed(tuple(turned(row, axis, -sine, cosine) for row in transposed(m)))

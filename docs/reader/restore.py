@@ -10,16 +10,24 @@ other and row by row, as little-endian doubles.
 import argparse
 import hashlib
 import importlib
+import lzma
+import struct
 import sys
 import zlib
 from pathlib import Path
 
+import c3d
 from container import Stream, packed, read_file, read_model
 from layout import Layout
 from records import CorruptError
 
 CODECS = ("app", "diffma", "exact")
 LOSSY = ("diffma",)
+# What a broken file may lead to.
+BROKEN = (
+    *(CorruptError, ValueError, LookupError, ArithmeticError),
+    *(struct.error, lzma.LZMAError, zlib.error),
+)
 
 
 def restored(data: bytes, model: bytes | None = None) -> bytes:
@@ -32,7 +40,11 @@ def restored(data: bytes, model: bytes | None = None) -> bytes:
         original = file.layout
     else:
         rows = decoded(file.streams[0], model)
-        original = Layout(file, len(rows)).printed(rows)
+        if file.format == "c3d":
+            others = [decoded(stream, None) for stream in file.streams[1:]]
+            original = c3d.Layout(file.layout).printed([rows, *others])
+        else:
+            original = Layout(file, len(rows)).printed(rows)
     codecs = [stream.codec for stream in file.streams]
     if hashlib.sha256(original).digest() != file.digest and not set(codecs) & set(LOSSY):
         raise CorruptError("what was restored is not the original")
@@ -71,7 +83,7 @@ def main() -> None:
     try:
         model = arguments.model.read_bytes() if arguments.model else None
         original = restored(arguments.file.read_bytes(), model)
-    except (CorruptError, ValueError, LookupError, OverflowError) as error:
+    except BROKEN as error:
         sys.exit(f"{arguments.file}: {error}")
     if arguments.output:
         with arguments.output.open("xb") as target:

@@ -7,6 +7,13 @@ import numpy
 from numpy.typing import NDArray
 
 
+def c3d_layout(data: bytes) -> tuple[int, bool, int, int, int, int, tuple[int, int, int], tuple[int, int, int], list[tuple[int, bool, bytes, int, bytes, int, int]]]:
+    """
+    Give processor, whether numbers are floats, announced frames, points, analog numbers
+    in a frame, samples of each channel in it; begin, count and numbers of the frames
+    and of the rotations; and the parameters: see core/formats/c3d.hpp.
+    """
+
 def parse_rows(data: bytes, begin: int, counter: bool, words: Sequence[bytes], counts: Sequence[int], most_rows: int) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None))], Annotated[NDArray[numpy.int64], dict(shape=(None,))], Annotated[NDArray[numpy.uint64], dict(shape=(None,))], Annotated[NDArray[numpy.uint8], dict(shape=(None, None))], int, int, int]:
     """
     Read rows from ``begin`` on: each a counter if any, then words with their numbers.

@@ -373,7 +373,7 @@ def read(source: Source, asf_path: str | Path | None = None, *, strict: bool = T
     parts = source.split(asf_path)
     source.accept(parts.problems, strict=strict)
     source.warn_of_guess()
-    return parts.clip
+    return of.describe(parts.stored, parts.clip) if of.describe else parts.clip
 
 
 def _name(named: Named) -> str:

@@ -17,7 +17,7 @@ from mocapress.motion import Clip
 
 sys.path.append(str(Path(__file__).parents[2] / "docs/reader"))
 import exact_fast
-from exact import Column
+from exact_header import Column
 from lines import Line
 
 Values = NDArray[np.float64]
@@ -212,6 +212,5 @@ def test_the_second_reader_agrees(line: tuple[int, int], level: int) -> None:
     values[20:30, 3] = 0
     values[40, 5], values[50, 6] = np.inf, 123456
     payload = assert_comes_back(values, plan(10, line), level)
-    column = Column(Line(*line), noise=False, unit=1.0, turns=0, place=None, start=[])
-    found = exact_fast.decode(payload, 60, [column] * 10, level)
+    found = exact_fast.decode(payload, 60, [Column(Line(*line))] * 10, level)
     assert np.array(found).tobytes() == values.tobytes()

@@ -34,7 +34,7 @@ def references(clip: Clip) -> References:
 
 def restored(data: bytes) -> tuple[bytes, Layout]:
     """Take apart, store the layout, read it again and join."""
-    clip, layout, _ = Source(data).split()
+    clip, layout, *_ = Source(data).split()
     again = layout
     for refer in (References(), references(clip)):
         stored = write_layout(layout, refer)
@@ -49,7 +49,7 @@ def test_rows_can_be_left_out(source: str) -> None:
     """Of rows that are lost, the rest is printed, and the header announces them."""
     data = AMC.replace(b"3\nroot 3.5", b"3\nroot  3.50") if source == "amc" else BVH
     data = data.replace(b"1.25 -2.5", b"1.250 -2.5")
-    clip, layout, _ = Source(data).split()
+    clip, layout, *_ = Source(data).split()
     keep = np.arange(clip.frames) % 2 == 0
     refer = references(clip)
     stored = write_layout(layout, refer)
@@ -116,7 +116,7 @@ def test_numbers_padded_to_a_width_need_one_template_only() -> None:
 
 def test_repeated_bone_names_keep_their_values_apart() -> None:
     data = AMC.replace(b"hip 1.25 -0.125", b"hip 1 2\nhip 3 4")
-    clip, layout, _ = Source(data).split()
+    clip, layout, *_ = Source(data).split()
     assert [c.name for c in clip.columns[6:]] == ["hip.v1", "hip.v2", "hip#2.v1", "hip#2.v2"]
     assert clip.values[0, 6:].tolist() == [1, 2, 3, 4]
     assert layout.join(clip.values) == data
@@ -143,7 +143,7 @@ def test_any_numbers_come_back(rows: list[list[str]], gap: str, end: str, last: 
     text = end.join(gap.join(row) for row in rows) + (end if last else "")
     header = BVH[: BVH.index(b"1.0 2.0")].replace(b"Frames: 4", b"Frames: %d" % len(rows))
     data = header + text.encode()
-    clip, layout, problems = Source(data).split()
+    clip, layout, problems, _ = Source(data).split()
     assert not problems
     assert clip.values.tolist() == [[float(t) for t in row] for row in rows]
     assert layout.join(clip.values) == data
@@ -151,7 +151,7 @@ def test_any_numbers_come_back(rows: list[list[str]], gap: str, end: str, last: 
 
 @given(st.binary(max_size=60), st.integers(0, 400), st.integers(0, 255))
 def test_broken_layouts_give_an_error(junk: bytes, at: int, byte: int) -> None:
-    clip, layout, _ = Source(AMC).split()
+    clip, layout, *_ = Source(AMC).split()
     refer = references(clip)
     stored = bytearray(write_layout(layout, refer))
     stored[at % len(stored)] = byte
@@ -167,6 +167,6 @@ def test_broken_layouts_give_an_error(junk: bytes, at: int, byte: int) -> None:
 def test_the_whole_corpus_comes_back(corpus_clips: list[Path]) -> None:
     for path in corpus_clips:
         data = path.read_bytes()
-        clip, layout, problems = Source(data, str(path)).split()
+        clip, layout, problems, _ = Source(data, str(path)).split()
         assert not problems
         assert layout.join(clip.values) == data

@@ -128,7 +128,7 @@ ALL = LOSES_NOTHING | LOSES_MOTION
 @pytest.mark.parametrize("name", ALL)
 def test_problems_are_named_and_placed(name: str) -> None:
     case = ALL[name]
-    clip, layout, problems = Source(case.data).split()
+    clip, layout, problems, _ = Source(case.data).split()
     assert [problem.name for problem in problems] == case.names
     assert (problems[0].line, problems[0].found) == case.place
     assert any(problem.loses_motion for problem in problems) == (name in LOSES_MOTION)
@@ -179,7 +179,7 @@ def test_a_take_with_unreadable_rows_keeps_its_duration(samples: Path, rows: ran
     first = len(lines) - clip.frames
     for row in rows:
         lines[first + row] = lines[first + row].replace(b" ", b" # ", 1)
-    read, layout, problems = Source(b"".join(lines)).split()
+    read, layout, problems, _ = Source(b"".join(lines)).split()
     assert layout.join(read.values) == b"".join(lines)
     kept = [i for i in range(clip.frames) if i not in rows]
     assert [problem.name for problem in problems][:1] == ["unreadable-rows"]
@@ -199,7 +199,7 @@ WRAPPED = {
 @pytest.mark.parametrize("name", WRAPPED)
 def test_rows_may_all_wrap_alike(name: str) -> None:
     data = WRAPPED[name]
-    clip, layout, problems = Source(data).split()
+    clip, layout, problems, _ = Source(data).split()
     assert not problems
     np.testing.assert_array_equal(clip.values, Source(BVH).split().clip.values)
     assert layout.join(clip.values) == data
@@ -210,7 +210,7 @@ def test_rows_may_all_wrap_alike(name: str) -> None:
 
 def test_two_short_rows_are_no_wrapped_row() -> None:
     data = HEAD + b"1 2\n3\n4 5 6\n7 8 9\n"
-    clip, _, problems = Source(data).split()
+    clip, _, problems, _ = Source(data).split()
     assert [problem.name for problem in problems] == ["unreadable-rows"]
     assert clip.values[:, 0].tolist() == [4, 4, 4, 7]
 
@@ -219,7 +219,7 @@ def test_a_bone_may_be_seen_first_in_a_later_frame() -> None:
     data = (
         b":DEGREES\n1\nroot 1 2 3 4 5 6\nhip 7\n2\nroot 1 2 3 4 5 6\nneck 8 9\nhip 7\n3\nneck 1 2\n"
     )
-    clip, layout, problems = Source(data).split()
+    clip, layout, problems, _ = Source(data).split()
     assert not problems
     assert [column.name for column in clip.columns[6:]] == ["neck.v1", "neck.v2", "hip.v1"]
     assert clip.values[:, 6:].tolist() == [[0, 0, 7], [8, 9, 7], [1, 2, 7]]

@@ -19,7 +19,8 @@ import mocapress as mp
 from mocapress.models import model_bytes
 
 HERE = Path(__file__).parent
-sys.path += [str(HERE), str(HERE.parent / "codecs")]
+sys.path += [str(HERE), str(HERE.parent / "codecs"), str(HERE.parent / "formats")]
+import c3d_files  # noqa: E402
 import clips  # noqa: E402
 import payloads  # noqa: E402
 
@@ -122,6 +123,11 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_leaps.amc": (clips.leaps(), "exact:level=7,chunk=22", {}),
     "v1_skeleton.amc": (clips.skeleton(), "exact:level=8,chunk=12", {}),
     "v1_wide.amc": (clips.wide(), "exact:chunk=2", {}),
+    "v1_intel.c3d": (c3d_files.odd_floats(c3d_files.INTEL), "exact:level=2,chunk=60", {}),
+    "v1_dec.c3d": (c3d_files.odd_floats(c3d_files.DEC), "exact:level=2,chunk=60", {}),
+    "v1_mips.c3d": (c3d_files.odd_floats(c3d_files.MIPS), "exact:level=2,chunk=60", {}),
+    "v1_integers.c3d": (c3d_files.whole_numbers(c3d_files.INTEL), "exact:level=2,chunk=60", {}),
+    "v1_mips_integers.c3d": (c3d_files.whole_numbers(c3d_files.MIPS), "exact:level=2,chunk=60", {}),
 }
 # NAME.mcz was coded with the model NAME.mcm, which was learned from the file itself.
 TRAINED = {

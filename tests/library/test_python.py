@@ -224,8 +224,8 @@ def test_read_only_media(three: Library, samples: Path, tmp_path: Path) -> None:
     folder = tmp_path / "disc"
     folder.mkdir()
     shutil.copy(three.path, folder / "lib.mocapdb")
-    os.chmod(folder / "lib.mocapdb", 0o444)
-    os.chmod(folder, 0o555)
+    (folder / "lib.mocapdb").chmod(0o444)
+    folder.chmod(0o555)
     # What is imported lazily is imported before the rights are given away.
     code = (
         "import os, sys\nimport mocapress as mp\n"
@@ -250,7 +250,7 @@ def test_read_only_media(three: Library, samples: Path, tmp_path: Path) -> None:
         assert "Permission denied" in denied
         assert [path.name for path in folder.iterdir()] == ["lib.mocapdb"]
     finally:
-        os.chmod(folder, 0o755)
+        folder.chmod(0o755)
         shutil.rmtree(folder)
 
 

@@ -56,8 +56,8 @@ def test_equal_small_files_are_stored_once(library: Library, data: bytes) -> Non
 def test_a_cut_of_300_frames_costs_at_most_400_bytes(tmp_path: Path, take: Take) -> None:
     header, rows = take
     cuts = {
-        f"cuts/{first}.amc": amc_of(header, rows[first : first + 300], number)
-        for first, number in itertools.product(range(0, 2400, 50), (1,))
+        f"cuts/{first}.amc": amc_of(header, rows[first : first + 300])
+        for first in range(0, 2400, 100)
     }
     file = tmp_path / "library.mocapdb"
     with mp.open_library(file, "a") as library:
@@ -198,6 +198,21 @@ def test_an_export_of_shared_frames_is_whole(library: Library, take: Take) -> No
     library.add(files["take.amc"], "copy.amc")
     for name, data in {**files, "copy.amc": files["take.amc"]}.items():
         assert mp.decompress(library.read_mcz(name)) == data
+    library.close()
+
+
+def test_files_of_several_streams_are_stored_once(library: Library) -> None:
+    file = Path(__file__).parents[1] / "golden" / "v1_mips.c3d"
+    for name in ("a.c3d", "b.c3d"):
+        library.add(file, name)
+        if name == "a.c3d":
+            once = stored(library)
+    assert stored(library) == once
+    sound(library, dict.fromkeys(("a.c3d", "b.c3d"), file.read_bytes()))
+    assert mp.decompress(library.read_mcz("b.c3d")) == file.read_bytes()
+    library.remove("a.c3d")
+    assert stored(library) == once
+    sound(library, {"b.c3d": file.read_bytes()})
     library.close()
 
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 from pathlib import Path, PurePath
 
 from mocapress.api.clips import Compressed, checked_codec, compress_clip, readable
-from mocapress.api.encoding import coded, placed, stored_skeleton
+from mocapress.api.encoding import CodedStream, coded, coded_streams, placed, stored_skeleton
 from mocapress.api.opening import Opened
 from mocapress.api.restoring import printed
-from mocapress.codecs import DEFAULT_CODEC, Codec, Encoded, Model
+from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.codecs.fallback import first_that_works
 from mocapress.codecs.loss import Loss, checked_loss
 from mocapress.container import Companion, Head, MczWriter, Original, is_storable_time, pack
@@ -20,7 +20,6 @@ from mocapress.formats.layout_record import write_layout
 from mocapress.formats.patterns import References
 from mocapress.models import load_model
 from mocapress.motion import Clip
-from mocapress.motion.clip import MOTION
 from mocapress.source import Named, Source
 
 # Below this size, or above this share of the original, the general-purpose way is tried as well.
@@ -157,13 +156,11 @@ def compress_parts(
 
             def work(way: Codec) -> tuple[bytes, Loss | None]:
                 own = model if way is codec else None
-                encoded = way.encode(parts.clip.main, skeleton=parts.clip.skeleton, model=own)
                 made = motion_file(
                     parts,
                     data,
                     stored_name(source.name),
-                    way,
-                    encoded,
+                    coded_streams(parts.clip, way, own),
                     own,
                     with_skeleton=with_skeleton,
                     companions=companions,
@@ -188,7 +185,7 @@ def _warning_of(parts: Split, source: Source) -> str | None:
 
 def unfit(parts: Split, size: int) -> str | None:
     """Say why a file of so many bytes cannot be compressed as motion; None where it can."""
-    clip, layout, _ = parts
+    clip, layout, *_ = parts
     if not clip.frames:
         return "no frames"
     irregular = layout.verbatim_bytes() + len(layout.tail) > size / 2
@@ -201,8 +198,7 @@ def motion_file(
     parts: Split,
     data: bytes,
     name: str,
-    codec: Codec,
-    encoded: Encoded,
+    streams: Sequence[CodedStream],
     model: Model | None = None,
     *,
     with_skeleton: bool = True,
@@ -215,31 +211,37 @@ def motion_file(
     ----------
     parts, data, name
         The motion file taken apart, its contents, and its name without folders.
-    codec, encoded, model
-        The codec, what it made of the clip, and with what model.
+    streams, model
+        What codecs made of the clip's streams, and with what model of the first.
     with_skeleton
         Whether the clip's skeleton is stored.
     companions, notes
         What else is stored.
 
     """
-    clip, layout, problems = parts
+    clip, layout, problems, stored = parts
     skeleton = stored_skeleton(clip) if with_skeleton else None
-    columns = clip.columns if skeleton else placed(clip.columns)
-    bones = [bone.name for bone in bones_of(columns) for _ in range(bone.columns)]
-    references = References.of(skeleton, bones, clip.frame_time)
-    original = Original(
-        layout.format,
-        name,
-        len(data),
-        hashlib.sha256(data).digest(),
-        problems,
-        pack(write_layout(layout, references)),
-    )
-    head, chunks = coded(clip, MOTION, 0, codec, encoded, model)
+    columns, kind = clip.columns, layout.format
+    if stored is None:
+        columns = columns if skeleton else placed(columns)
+        bones = [bone.name for bone in bones_of(columns) for _ in range(bone.columns)]
+        record = write_layout(layout, References.of(skeleton, bones, clip.frame_time))
+    else:
+        record, kind = stored.record(), stored.format
+    digest = hashlib.sha256(data).digest()
+    original = Original(kind, name, len(data), digest, problems, pack(record))
+    heads, chunks = [], []
+    for index, ((of_stream, stream), (codec, encoded)) in enumerate(
+        zip(clip.streams.items(), streams, strict=True)
+    ):
+        alone, own = Clip({of_stream: stream}, clip.skeleton), model if index == 0 else None
+        head, found = coded(alone, of_stream, index, codec, encoded, own)
+        heads.append(head)
+        chunks += found
+    heads[0] = replace(heads[0], columns=columns)
     made: list[bytes] = []
     writer = MczWriter(made.append)
-    writer.head(Head((replace(head, columns=columns),), skeleton))
+    writer.head(Head(tuple(heads), skeleton))
     writer.original(original)
     for companion in companions:
         writer.companion(companion)

@@ -8,7 +8,7 @@ import numpy as np
 
 from mocapress import formats
 from mocapress.api.opening import Opened
-from mocapress.api.restoring import contents
+from mocapress.api.restoring import contents, own_layout
 from mocapress.container import CHANNELS, StreamHead, diffma_json
 from mocapress.errors import (
     CorruptError,
@@ -119,7 +119,7 @@ def load_opened(
     clip = _clip(opened, frames, stream, asf_path)
     source.warn_of_guess()
     _warn(opened)
-    return clip
+    return _described(opened, clip)
 
 
 def columns_of(opened: Opened, asf_path: str | Path | None = None) -> Clip:
@@ -129,7 +129,16 @@ def columns_of(opened: Opened, asf_path: str | Path | None = None) -> Clip:
         for head in opened.streams
         if head.kind == CHANNELS
     }
-    return _with_skeleton(opened, Clip(streams), asf_path)
+    return _described(opened, _with_skeleton(opened, Clip(streams), asf_path))
+
+
+def _described(opened: Opened, clip: Clip) -> Clip:
+    """Give streams the names and units that the layout of the original knows."""
+    original = opened.mcz.original
+    of = _format(original.format) if original and original.format else None
+    if original is None or of is None or of.describe is None:
+        return clip
+    return of.describe(own_layout(original), clip)
 
 
 def _clip(
@@ -211,7 +220,7 @@ def _of_contents(opened: Opened, asf_path: str | Path | None, *, strict: bool) -
         raise FormatError("no motion in this file", expected=f"{known} inside")
     parts = source.split(asf_path, of, data)
     source.accept(parts.problems, strict=strict)
-    return parts.clip
+    return of.describe(parts.stored, parts.clip) if of.describe else parts.clip
 
 
 def _unknown(opened: Opened, head: StreamHead) -> None:

@@ -4,9 +4,14 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress import formats
 from mocapress.api.opening import Opened, Rows
 from mocapress.container import Companion, Damage, Original, StreamHead, diffma_json, limits
 from mocapress.errors import CorruptError, UnsupportedError
+from mocapress.formats.contract import StoredLayout
 from mocapress.formats.layout import Layout
 from mocapress.formats.layout_record import read_layout
 from mocapress.formats.number_formats import SHORTEST
@@ -107,6 +112,9 @@ def contents(opened: Opened, original: Original) -> bytes:
 def printed(opened: Opened, original: Original, rows: Rows) -> bytes:
     """Print decoded rows in the original's layout; lost rows are left out."""
     size = original.size
+    own = own_layout(original)
+    if own is not None:
+        return own.join([rows.values, *_others(opened)], limits.most_printed(size, 0))
     most = size
     if not opened.codec().lossless:
         most = limits.most_printed(size, rows.values.size)
@@ -115,6 +123,17 @@ def printed(opened: Opened, original: Original, rows: Rows) -> bytes:
     if keep is None:
         return layout.join(rows.values, most)
     return layout.rows(keep).join(rows.values[keep], most)
+
+
+def own_layout(original: Original) -> StoredLayout | None:
+    """Read the layout of a format that has its own kind of layout; None for rows of text."""
+    of = formats.by_id(original.format)
+    return None if of.read_layout is None else of.read_layout(original.layout())
+
+
+def _others(opened: Opened) -> list[NDArray[np.float64]]:
+    """Decode all streams but the first; what is lost is NaN."""
+    return [opened.rows(index).values for index in range(1, len(opened.streams))]
 
 
 def layout_of(opened: Opened, original: Original, rows: int) -> Layout:

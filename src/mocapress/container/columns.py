@@ -7,10 +7,12 @@ from typing import NamedTuple
 from mocapress.container import limits
 from mocapress.formats.number_formats import read_format, write_format
 from mocapress.motion.clip import Column
+from mocapress.motion.columns import numbered_columns
 from mocapress.motion.skeleton import Skeleton
 from mocapress.records import Reader, Writer
 
-_SKELETON, _BONES, _ONE_BY_ONE = range(3)
+_SKELETON, _BONES, _ONE_BY_ONE, _NUMBERED = range(4)
+_MOST_KINDS = 64
 
 
 class Bone(NamedTuple):
@@ -34,6 +36,11 @@ def write_columns(writer: Writer, columns: Sequence[Column], skeleton: Skeleton 
     writer.integer(len(columns))
     if skeleton and _alike(_skeleton_columns(skeleton).columns, columns):
         writer.integer(_SKELETON)
+    elif kinds := _numbered_kinds(columns):
+        writer.integer(_NUMBERED)
+        writer.integer(len(kinds))
+        for kind in kinds:
+            writer.text(kind)
     elif bones := bones_of(columns):
         writer.integer(_BONES)
         writer.integer(len(bones))
@@ -61,7 +68,7 @@ def write_columns(writer: Writer, columns: Sequence[Column], skeleton: Skeleton 
 def read_columns(reader: Reader, skeleton: Skeleton | None) -> Columns:
     """Take columns."""
     count = reader.integer(limits.COLUMNS)
-    form = reader.integer(_ONE_BY_ONE)
+    form = reader.integer(_NUMBERED)
     if form == _SKELETON:
         found = _skeleton_columns(skeleton) if skeleton else Columns((), ())
         if len(found.columns) != count:
@@ -69,6 +76,11 @@ def read_columns(reader: Reader, skeleton: Skeleton | None) -> Columns:
     elif form == _BONES:
         bones = _read_bones(reader, count)
         found = Columns(_columns_of(bones, *_read_kinds(reader, count)), bones)
+    elif form == _NUMBERED:
+        own = tuple(reader.text() for _ in range(reader.integer(_MOST_KINDS)))
+        if not own or count % len(own):
+            raise reader.fail(f"{count} columns in groups of {len(own)}")
+        found = Columns(numbered_columns(count, own), ())
     else:
         names = [reader.text() for _ in range(count)]
         joints = reader.runs(count, limits.JOINTS).tolist()
@@ -87,6 +99,14 @@ def read_columns(reader: Reader, skeleton: Skeleton | None) -> Columns:
         for column, place in zip(found.columns, places, strict=True)
     )
     return Columns(tuple(columns), found.bones)
+
+
+def _numbered_kinds(columns: Sequence[Column]) -> tuple[str, ...]:
+    """Give the kinds of numbered columns; nothing where columns are no such."""
+    kinds = tuple(column.kind for column in columns if column.name == f"1.{column.kind}")
+    fitting = 0 < len(kinds) <= _MOST_KINDS and len(columns) % len(kinds) == 0
+    same = fitting and _alike(numbered_columns(len(columns), kinds), columns)
+    return kinds if same else ()
 
 
 def bones_of(columns: Sequence[Column]) -> tuple[Bone, ...]:

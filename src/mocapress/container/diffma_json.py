@@ -20,7 +20,7 @@ from mocapress.errors import (
     ParameterError,
     UnsupportedError,
 )
-from mocapress.formats.layout import Layout
+from mocapress.formats.layout import NO_ROWS, Layout
 from mocapress.formats.layout_record import read_layout, write_layout
 from mocapress.formats.number_formats import SHORTEST
 from mocapress.formats.patterns import References
@@ -110,7 +110,9 @@ def file_to_json(
         When it is not a motion file, or is broken.
 
     """
-    clip, layout, problems = source.split(asf_path)
+    clip, layout, problems, _ = source.split(asf_path)
+    if layout is NO_ROWS:
+        raise UnsupportedError("DiffMA JSON holds files of text", file=source.name or None)
     source.accept(problems)
     source.warn_of_guess()
     text = clip_to_json(clip, codec, layout=_packed(layout, clip))

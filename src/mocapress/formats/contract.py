@@ -3,11 +3,31 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
 
 from mocapress.formats.layout import Layout
 from mocapress.formats.problems import Problem
 from mocapress.motion import Clip, Skeleton
+
+
+class StoredLayout(Protocol):
+    """Everything of a file that is not in its streams, where it is not rows of text."""
+
+    @property
+    def format(self) -> str:
+        """Id of the format."""
+        ...
+
+    def join(self, streams: Sequence[NDArray[np.float64]], most_bytes: int = ...) -> bytes:
+        """Give the file's bytes from the values of all streams; ``CorruptError`` as ``Layout``."""
+        ...
+
+    def record(self) -> bytes:
+        """Give the layout as it is stored; the format's ``read_layout`` reads it."""
+        ...
 
 
 class Split(NamedTuple):
@@ -15,8 +35,11 @@ class Split(NamedTuple):
 
     clip: Clip
     layout: Layout
+    """Of rows of text; ``NO_ROWS`` where the file is none."""
     problems: tuple[Problem, ...]
     """Where the file departs from its format. What is no row is in the layout's tail."""
+    stored: StoredLayout | None = None
+    """The layout of a file that is no rows of text."""
 
 
 def split_of(clip: Clip, layout: Layout, problems: Sequence[Problem], file: str | None) -> Split:
@@ -61,6 +84,10 @@ class Format:
     """Prints a clip that was made to fit: contents by suffix, the file itself first, then what
     belongs beside it. Numbers are printed in their columns' formats, else with the fewest digits.
     """
+    read_layout: Callable[[bytes], StoredLayout] | None = None
+    """Reads the record of a layout of the format's own. Without it, layouts are those of rows."""
+    describe: Callable[[Any, Clip], Clip] | None = None
+    """Gives streams as they are stored the names and units that such a layout knows."""
     timed: bool = True
     """Whether files have to state their frame time."""
     companion: str | None = None

@@ -120,6 +120,22 @@ class Layout:
         )
 
 
+NO_ROWS = Layout(
+    "",
+    b"",
+    b"",
+    (),
+    (),
+    np.empty(0, np.int32),
+    np.empty(0, np.int64),
+    np.empty(0, np.uint64),
+    np.empty(0, np.uint32),
+    (),
+    (),
+)
+"""The layout of no text."""
+
+
 def build(
     kind: str,
     data: bytes,

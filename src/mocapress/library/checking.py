@@ -12,11 +12,14 @@ from mocapress.container.limits import most_original
 from mocapress.errors import CorruptError, MissingModelError, MocapressError
 from mocapress.library.database import Database
 from mocapress.library.opened import OpenedClip, StoredMcz
-from mocapress.library.rows import Connection, Run, hash_of
+from mocapress.library.rows import RUN_COLUMNS, Connection, Run, hash_of
 from mocapress.models import Place
 
 _MOST_LINES = 20
 """Of what SQLite says of a damaged database."""
+
+Places = dict[tuple[int, int], list[range]]
+"""Frames of a stream of a clip, among those in its chunks."""
 
 
 class Fault(NamedTuple):
@@ -89,8 +92,8 @@ def check(db: Database) -> Iterator[list[Fault]]:
     """
     with db.reading() as connection:
         yield [*_integrity(connection)]
-        damaged: dict[int, list[range]] = {}
-        own: dict[int, int] = {}
+        damaged: Places = {}
+        own: dict[tuple[int, int], int] = {}
         clips = [*survivors(connection)]
         for clip, name in clips:
             faults: list[Fault] = []
@@ -129,13 +132,14 @@ def _integrity(connection: Connection) -> Iterator[Fault]:
 
 
 def _read(
-    db: Database, clip: int, name: str, damaged: dict[int, list[range]], own: dict[int, int]
+    db: Database, clip: int, name: str, damaged: Places, own: dict[tuple[int, int], int]
 ) -> Iterator[Fault]:
     stored = StoredMcz(db, clip, salvage=True)
     if not stored.sound:
         yield Fault(name, "facts: wrong checksum")
     opened = OpenedClip(db, clip, salvage=True)
-    own[clip] = opened.own_frames() if opened.streams else 0
+    for index in range(len(opened.streams)):
+        own[clip, index] = opened.own_frames(index)
     for where, error in opened.damage:
         yield Fault(name, f"{where}: {error.what}")
     for entry in opened.mcz.entries:
@@ -143,27 +147,26 @@ def _read(
             opened.mcz.read_chunk(entry)
         except MocapressError as error:
             yield Fault(name, error.what)
-            if entry.stream == 0:
-                damaged.setdefault(clip, []).append(range(entry.first, entry.last))
+            damaged.setdefault((clip, entry.stream), []).append(range(entry.first, entry.last))
 
 
 def _of_others(
     connection: Connection,
     clip: int,
     names: dict[int, str],
-    damaged: dict[int, list[range]],
-    own: dict[int, int],
+    damaged: Places,
+    own: dict[tuple[int, int], int],
 ) -> Iterator[Fault]:
     """Name the frames of a clip that are damaged in another."""
     for row in connection.execute(
-        "SELECT first, frames, source, source_first FROM runs WHERE clip = ?", [clip]
+        f"SELECT {RUN_COLUMNS} FROM runs WHERE clip = ?",  # noqa: S608
+        [clip],
     ).fetchall():
         run = Run(*row)
-        last = run.source_first + run.frames
-        lost = [
-            r for r in damaged.get(run.source, []) if r.start < last and r.stop > run.source_first
-        ]
-        if lost or last > own.get(run.source, 0):
+        begin, end = run.source_first, run.source_first + run.frames
+        place = run.source, run.stream
+        lost = any(r.start < end and r.stop > begin for r in damaged.get(place, []))
+        if lost or end > own.get(place, 0):
             other = names.get(run.source, f"of id {run.source}")
             frames = f"frames {run.first} to {run.first + run.frames - 1}"
             yield Fault(names[clip], f"{frames} are those of clip {other}, which is damaged")

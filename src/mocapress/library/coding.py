@@ -1,13 +1,13 @@
 """Coding what is to be added: as a ``.mcz``, and as runs of what the library has."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mocapress.api.clips import compress_clip
 from mocapress.api.compressing import compress_parts, motion_file, stored_name, unfit
+from mocapress.api.encoding import coded_streams
 from mocapress.api.opening import Opened
 from mocapress.api.restoring import contents
 from mocapress.codecs import Codec, Model
@@ -108,9 +108,9 @@ class Coder:
             if stream.columns
         ]
         first = values[0] if opened.streams[0].columns else np.empty((opened.frames(), 0))
-        shared = first.size and opened.codec().lossless
+        kept_exact = first.size and opened.codec().lossless
         kind = mcz.original.format if mcz.original else None
-        hashes = anchors(first) if shared else None
+        hashes = anchors(first) if kept_exact else None
         models = [opened.model(index) for index in range(len(opened.streams))]
         kept = tuple(model for model in models if model is not None)
         return Coded(mcz, kind, first.shape, (), hashes, None, kept)
@@ -124,40 +124,58 @@ class Coder:
             newest = self.known.refresh(connection)
             candidates = self.known.candidates(connection, digest, anchors(clip.values))
             wanted = [other for other in candidates if other != without]
-            if self.codec.lossless:
-                return newest, tuple(find_runs(self.db, clip.values, wanted, self.models))
-            return newest, self._same_file(clip, digest, wanted)
+            if not self.codec.lossless:
+                return newest, self._same_file(clip, digest, wanted)
+            return newest, tuple(shared(self.db, clip, wanted, self.models))
 
     def _same_file(self, clip: Clip, digest: bytes, candidates: Sequence[int]) -> tuple[Run, ...]:
         """Find the equal file that was coded in the same way: a lossy codec gives the same."""
+        frames = [stream.frames for stream in clip.streams.values()]
         for other in candidates:
             opened = OpenedClip(self.db, other, self.models)
-            same = opened.facts.sha256 == digest and opened.own_frames() == clip.frames
-            if same and not opened.runs and opened.codec() == self.codec:
-                return (Run(0, clip.frames, other, 0),)
+            own = [opened.own_frames(index) for index in range(len(opened.streams))]
+            if opened.facts.sha256 == digest and own == frames and opened.codec() == self.codec:
+                return tuple(
+                    Run.whole(index, of_stream, other)
+                    for index, of_stream in enumerate(frames)
+                    if of_stream
+                )
         return ()
 
     def _rest(self, source: Source, parts: Split, runs: Sequence[Run], way: Codec) -> bytes:
         """Code the frames that are in no run, and the layout of all."""
-        clip = parts.clip
-        own = clip.with_frames(clip.values[outside(runs, clip.frames)], clip.frame_time)
+        rest = without_runs(parts.clip, runs)
         model = self.model if way is self.codec else None
-        encoded = way.encode(own.main, skeleton=own.skeleton, model=model)
-        rest = parts._replace(clip=own)
-        blob = motion_file(rest, source.data, stored_name(source.name), way, encoded, model)
-        decoded = Opened(Source(blob), [model] if model else []).rows().values
-        if way.lossless and decoded.tobytes() != own.values.tobytes():
-            raise VerificationError(f"codec {way.id} does not give the frames back")
+        streams = coded_streams(rest, way, model, parts.clip)
+        name = stored_name(source.name)
+        blob = motion_file(parts._replace(clip=rest), source.data, name, streams, model)
+        opened = Opened(Source(blob), [model] if model else [])
+        for index, (coded, stream) in enumerate(zip(streams, rest.streams.values(), strict=True)):
+            decoded = opened.rows(index).values
+            if coded.codec.lossless and decoded.tobytes() != stream.values.tobytes():
+                raise VerificationError(f"codec {way.id} does not give the frames back")
         return blob
 
     def _anchors(self, clip: Clip, runs: Sequence[Run]) -> Hashes | None:
-        own = clip.values[outside(runs, clip.frames)]
+        own = without_runs(clip, runs).values
         return anchors(own) if self.codec.lossless and own.size else None
 
 
-def outside(runs: Sequence[Run], frames: int) -> NDArray[np.bool_]:
-    """Say which frames are in no run, (F,)."""
-    free = np.ones(frames, np.bool_)
-    for run in runs:
-        free[run.first : run.first + run.frames] = False
-    return free
+def shared(
+    db: Database, clip: Clip, candidates: Sequence[int], models: Sequence[Place]
+) -> Iterator[Run]:
+    """Give the runs of all streams of a clip."""
+    for index, stream in enumerate(clip.streams.values()):
+        yield from find_runs(db, index, stream.values, candidates, models)
+
+
+def without_runs(clip: Clip, runs: Sequence[Run]) -> Clip:
+    """Give a clip with only the frames that are in no run."""
+    streams = {}
+    for index, (name, stream) in enumerate(clip.streams.items()):
+        free = np.ones(stream.frames, np.bool_)
+        for run in runs:
+            if run.stream == index:
+                free[run.first : run.first + run.frames] = False
+        streams[name] = stream if free.all() else replace(stream, values=stream.values[free])
+    return replace(clip, streams=streams)

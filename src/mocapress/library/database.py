@@ -17,7 +17,6 @@ from urllib.parse import quote
 from mocapress.errors import (
     BusyError,
     CorruptError,
-    MocapressError,
     ParameterError,
     UnsupportedError,
 )
@@ -176,9 +175,6 @@ class Database:
         if self._closed:
             return
         mine = self._pid == os.getpid()
-        if mine and self.writable:
-            with suppress(sqlite3.Error, MocapressError):
-                self.connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
         self._closed = True
         if not mine:
             _inherited.extend([*self._all, self._own])

@@ -40,11 +40,11 @@ def _coded(opened: OpenedClip) -> tuple[Head | None, Mcz]:
     other = opened.whole_source()
     if other is not None:
         return inherited(opened, other), other.mcz
-    stream = opened.streams[0]
-    clip = Clip(
-        {stream.name: Stream(opened.rows().values, stream.columns, stream.frame_time)},
-        head.skeleton,
-    )
+    streams = {
+        stream.name: Stream(opened.rows(index).values, stream.columns, stream.frame_time)
+        for index, stream in enumerate(opened.streams)
+    }
+    clip = Clip(streams, head.skeleton)
     made = open_mcz(Source(compress_clip(clip, opened.codec(), model=opened.model()).blob))
     return made.head, made
 

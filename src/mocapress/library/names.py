@@ -23,7 +23,7 @@ def checked(name: str) -> str:
     if "\0" in name or any(part in ("", ".", "..") for part in parts):
         raise ParameterError(
             "not a name for a clip",
-            expected="a relative path such as 01/01_01.amc",
+            expected="a relative path such as walks/01",
             found=repr(name),
         )
     return name

@@ -19,7 +19,7 @@ from mocapress.container.sections import section
 from mocapress.container.tags import MAGIC, VERSION, Tag
 from mocapress.errors import CorruptError, ParameterError
 from mocapress.library.database import Database
-from mocapress.library.rows import Facts, Run, checksum, hash_of, read_clip
+from mocapress.library.rows import RUN_COLUMNS, Facts, Run, checksum, hash_of, read_clip
 from mocapress.models import Place, load_model
 from mocapress.records import Reader
 from mocapress.source import Source
@@ -201,9 +201,7 @@ class OpenedClip(Opened):
         names = {stream.model for stream in self.streams} - {b""}
         kept = [self._kept_model(digest) for digest in sorted(names)]
         self._places = [*models, *(model for model in kept if model is not None)]
-        # Where the clip has all its frames itself, nothing else is asked.
-        whole = not self.streams or self.own_frames() == self.facts.frames
-        self.runs = [] if whole else [*self._find_runs()]
+        self.runs = [*self._find_runs()]
         self._check_runs()
 
     @property
@@ -218,71 +216,92 @@ class OpenedClip(Opened):
         return None if row is None else load_model(row[0])
 
     def _find_runs(self) -> Iterator[Run]:
+        # Where the clip has all its frames itself, nothing else is asked.
+        if not self.streams or (len(self.streams) == 1 and super().frames() == self.facts.frames):
+            return
         for row in self.db.connection.execute(
-            "SELECT first, frames, source, source_first FROM runs WHERE clip = ? ORDER BY first",
+            f"SELECT {RUN_COLUMNS} FROM runs WHERE clip = ? ORDER BY stream, first",  # noqa: S608
             [self.clip],
         ):
             yield Run(*row)
 
     def _check_runs(self) -> None:
         """See that the runs lie one behind the other, before memory is asked for them."""
-        reached = 0
-        for run in self.runs:
-            if run.first < reached or run.frames < 1 or run.source_first < 0:
-                raise CorruptError("damaged: the runs of other clips", file=self.facts.name)
-            reached = run.first + run.frames
-        frames = self.frames()
-        most = most_values(self.db.path.stat().st_size)
-        columns = len(self.streams[0].columns) if self.streams else 0
-        announced = not self.streams or frames == self.facts.frames or self.salvage
-        if not announced or (self.runs and (reached > frames or frames * max(columns, 1) > most)):
-            raise CorruptError("damaged: the runs of other clips", file=self.facts.name)
+        fault = CorruptError("damaged: the runs of other clips", file=self.facts.name)
+        values = 0
+        for index, stream in enumerate(self.streams):
+            reached = 0
+            for run in self.runs_of(index):
+                if run.first < reached or run.frames < 1 or run.source_first < 0:
+                    raise fault
+                reached = run.first + run.frames
+            frames = self.frames(index)
+            values += frames * max(len(stream.columns), 1)
+            if reached > frames:
+                raise fault
+        shared = self.runs and values > most_values(self.db.path.stat().st_size)
+        unknown = any(run.stream not in range(len(self.streams)) for run in self.runs)
+        if shared or unknown:
+            raise fault
+        if self.streams and self.frames() != self.facts.frames and not self.salvage:
+            raise fault
+
+    def runs_of(self, stream: int) -> list[Run]:
+        """Give the runs of a stream, in the order of its frames."""
+        return [run for run in self.runs if run.stream == stream]
 
     def whole_source(self) -> "OpenedClip | None":
         """Give the clip whose frames in chunks are all the frames of this one, if there is one."""
-        if len(self.runs) != 1 or self.own_frames() or len(self.streams) > 1:
+        sources = {run.source for run in self.runs}
+        if len(sources) != 1:
             return None
-        run = self.runs[0]
-        other = self._other(run.source)
-        whole = run.source_first == 0 and run.frames == other.own_frames()
+        other = self._other(*sources)
         # Decoders go by the columns, too.
-        alike = [stream.columns for stream in other.streams] == [self.streams[0].columns]
-        return other if whole and alike else None
+        alike = [stream.columns for stream in other.streams] == [
+            stream.columns for stream in self.streams
+        ]
+        whole = [
+            Run.whole(index, other.own_frames(index), other.clip)
+            for index in range(len(other.streams))
+            if other.own_frames(index)
+        ]
+        nothing_own = not any(self.own_frames(index) for index in range(len(self.streams)))
+        return other if alike and nothing_own and whole == self.runs and not other.runs else None
 
     def own_frames(self, stream: int = 0) -> int:
         """Give how many frames of a stream are in chunks of the clip."""
         return super().frames(stream)
 
-    def own_rows(self, first: int = 0, last: int | None = None) -> Rows:
-        """Decode frames that are in chunks of the clip, counted among these."""
-        return super().rows(0, first, last)
+    def own_rows(self, stream: int = 0, first: int = 0, last: int | None = None) -> Rows:
+        """Decode frames of a stream that are in chunks of the clip, counted among these."""
+        return super().rows(stream, first, last)
 
     def frames(self, stream: int = 0) -> int:
         """Give how many frames a stream has."""
-        shared = sum(run.frames for run in self.runs) if stream == 0 else 0
-        return self.own_frames(stream) + shared
+        return self.own_frames(stream) + sum(run.frames for run in self.runs_of(stream))
 
     def rows(self, stream: int = 0, first: int = 0, last: int | None = None) -> Rows:
         """Decode frames [first, last) of a stream; see ``Opened.rows``."""
-        if stream or not self.runs:
+        if not self.runs_of(stream):
             return super().rows(stream, first, last)
-        last = self.frames() if last is None else last
-        values = np.full((max(last - first, 0), len(self.streams[0].columns)), np.nan)
+        last = self.frames(stream) if last is None else last
+        values = np.full((max(last - first, 0), len(self.streams[stream].columns)), np.nan)
         kept = np.zeros(len(values), np.bool_)
-        for begin, end, source, source_first in self._pieces():
+        for begin, end, source, source_first in self._pieces(stream):
             start, stop = max(begin, first), min(end, last)
             if start < stop:
                 offset = source_first - begin
-                rows = self._rows_of(source, start + offset, stop + offset)
+                rows = self._rows_of(source, stream, start + offset, stop + offset)
                 values[start - first : stop - first] = rows.values
                 kept[start - first : stop - first] = rows.kept
         return Rows(values, kept)
 
-    def _pieces(self) -> list[tuple[int, int, int, int]]:
+    def _pieces(self, stream: int) -> list[tuple[int, int, int, int]]:
         """Give all frames in pieces: first, behind the last, whose, and where among these."""
         pieces = []
         reached = own = 0
-        for run in [*self.runs, Run(self.frames(), 0, self.clip, 0)]:
+        end = Run(stream, self.frames(stream), 0, self.clip, 0)
+        for run in [*self.runs_of(stream), end]:
             if run.first > reached:
                 pieces.append((reached, run.first, self.clip, own))
                 own += run.first - reached
@@ -290,16 +309,19 @@ class OpenedClip(Opened):
             pieces.append((run.first, reached, run.source, run.source_first))
         return pieces
 
-    def _rows_of(self, clip: int, first: int, last: int) -> Rows:
+    def _rows_of(self, clip: int, stream: int, first: int, last: int) -> Rows:
         if clip == self.clip:
-            return self.own_rows(first, last)
+            return self.own_rows(stream, first, last)
         other = self._other(clip)
-        if last > other.own_frames() or len(other.streams[0].columns) != len(
-            self.streams[0].columns
+        columns = len(self.streams[stream].columns)
+        if (
+            stream >= len(other.streams)
+            or last > other.own_frames(stream)
+            or len(other.streams[stream].columns) != columns
         ):
             raise CorruptError("damaged: a run of frames that are not there", file=self.facts.name)
         seen = len(other.damage)
-        rows = other.own_rows(first, last)
+        rows = other.own_rows(stream, first, last)
         self.damage.extend(
             Damage(f"{where} of clip {other.facts.name}", error)
             for where, error in other.damage[seen:]
@@ -315,12 +337,8 @@ class OpenedClip(Opened):
 def inherited(heir: OpenedClip, other: OpenedClip) -> Head:
     """Give the head of a clip that has the chunks of another for its own."""
     assert heir.mcz.head is not None
-    coded = other.streams[0]
-    stream = replace(
-        heir.streams[0],
-        frames=other.own_frames(),
-        codec=coded.codec,
-        model=coded.model,
-        header=coded.header,
+    streams = (
+        replace(own, frames=coded.frames, codec=coded.codec, model=coded.model, header=coded.header)
+        for own, coded in zip(heir.streams, other.streams, strict=True)
     )
-    return Head((stream,), heir.mcz.head.skeleton)
+    return Head(tuple(streams), heir.mcz.head.skeleton)

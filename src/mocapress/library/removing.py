@@ -1,7 +1,7 @@
 """Removing clips from a library, and coding them anew; what others share of them stays whole."""
 
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import BinaryIO
 
 import numpy as np
@@ -12,10 +12,10 @@ from mocapress.container import Mcz, open_mcz
 from mocapress.container.head import write_parts
 from mocapress.errors import ParameterError
 from mocapress.library import rows
-from mocapress.library.coding import Coder, outside
+from mocapress.library.coding import Coder, shared, without_runs
 from mocapress.library.opened import OpenedClip, inherited
 from mocapress.library.rows import Connection
-from mocapress.library.sharing import Values, anchors, find_runs
+from mocapress.library.sharing import Values, anchors
 from mocapress.motion import Clip, Stream
 from mocapress.source import Source
 
@@ -36,7 +36,8 @@ def remove_clips(coder: Coder, clips: Sequence[int]) -> None:
                 rows.drop_clip(connection, clip)
             spool.seek(0)
             for opened in kept:
-                _code_again(connection, coder, opened, np.load(spool, allow_pickle=False))
+                values = [np.load(spool, allow_pickle=False) for _ in opened.streams]
+                _code_again(connection, coder, opened, _clip(opened, values))
 
 
 def recompress(coder: Coder, clip: int) -> tuple[int, int]:
@@ -64,7 +65,8 @@ def recompress(coder: Coder, clip: int) -> tuple[int, int]:
                 "a lossy clip stays as it is", file=opened.facts.name, expected="a lossless one"
             )
         before = [entry.end - entry.begin for entry in opened.mcz.entries]
-        made = _coded(opened, _own_values(opened), coder.codec, coder.model)
+        own = [opened.own_rows(index).values for index in range(len(opened.streams))]
+        made = _coded(_clip(opened, own), coder.codec, coder.model)
         seen = opened.facts.head
     with coder.db.writing() as connection:
         found = rows.read_clip(connection, clip)
@@ -75,23 +77,20 @@ def recompress(coder: Coder, clip: int) -> tuple[int, int]:
     return sum(before), sum(entry.end - entry.begin for entry in made.entries)
 
 
-def _own_values(opened: OpenedClip) -> list[Values]:
-    return [
-        opened.own_rows().values if stream == 0 else opened.rows(stream).values
-        for stream in range(len(opened.streams))
-    ]
-
-
-def _coded(opened: OpenedClip, values: Iterable[Values], codec: Codec, model: Model | None) -> Mcz:
-    """Code the streams of a clip: head and chunks."""
+def _clip(opened: OpenedClip, values: Sequence[Values]) -> Clip:
+    """Give the streams of a clip with other frames."""
     head = opened.mcz.head
     assert head is not None
     streams = {
         stream.name: Stream(of_stream, stream.columns, stream.frame_time)
         for stream, of_stream in zip(head.streams, values, strict=True)
     }
-    blob = compress_clip(Clip(streams, head.skeleton), codec, model=model).blob
-    return open_mcz(Source(blob))
+    return Clip(streams, head.skeleton)
+
+
+def _coded(clip: Clip, codec: Codec, model: Model | None) -> Mcz:
+    """Code a clip: head and chunks."""
+    return open_mcz(Source(compress_clip(clip, codec, model=model).blob))
 
 
 def _store(connection: Connection, clip: int, made: Mcz, model: Model | None) -> None:
@@ -112,7 +111,7 @@ def _hand_over(connection: Connection, coder: Coder, clip: int, removed: Sequenc
     Nothing is coded again then, and a lossy clip stays what it is.
     """
     for (other,) in connection.execute(
-        "SELECT clip FROM runs WHERE source = ? AND first = 0 ORDER BY clip", [clip]
+        "SELECT DISTINCT clip FROM runs WHERE source = ? AND first = 0 ORDER BY clip", [clip]
     ).fetchall():
         heir = None if other in removed else OpenedClip(coder.db, other, coder.models)
         source = None if heir is None else heir.whole_source()
@@ -155,20 +154,20 @@ def _dependents(connection: Connection, clips: Sequence[int]) -> list[int]:
 def _kept(coder: Coder, clip: int, spool: BinaryIO) -> OpenedClip:
     """Put the frames of a clip aside, and give what else is known of it."""
     opened = OpenedClip(coder.db, clip, coder.models)
-    np.save(spool, opened.rows().values, allow_pickle=False)
+    for index in range(len(opened.streams)):
+        np.save(spool, opened.rows(index).values, allow_pickle=False)
     return opened
 
 
-def _code_again(connection: Connection, coder: Coder, opened: OpenedClip, values: Values) -> None:
+def _code_again(connection: Connection, coder: Coder, opened: OpenedClip, clip: Clip) -> None:
     """Code all frames of a clip, as far as no other has them."""
     coder.known.refresh(connection)
-    candidates = coder.known.candidates(connection, opened.facts.sha256, anchors(values))
-    runs = find_runs(coder.db, values, candidates, coder.models)
-    own = values[outside(runs, len(values))]
-    model = opened.model()
-    _store(connection, opened.clip, _coded(opened, [own], opened.codec(), model), model)
+    found = coder.known.candidates(connection, opened.facts.sha256, anchors(clip.values))
+    runs = [*shared(coder.db, clip, found, coder.models)]
+    rest, model = without_runs(clip, runs), opened.model()
+    _store(connection, opened.clip, _coded(rest, opened.codec(), model), model)
     rows.insert_runs(connection, opened.clip, runs)
-    if own.size:
-        hashes = anchors(own)
+    if rest.values.size:
+        hashes = anchors(rest.values)
         rows.insert_anchors(connection, opened.clip, hashes)
         coder.known.learn(opened.clip, hashes)

@@ -39,14 +39,24 @@ class Facts(NamedTuple):
 
 
 class Run(NamedTuple):
-    """Frames of a clip that another clip has."""
+    """Frames of a stream of a clip that the same stream of another clip has."""
 
+    stream: int
+    """Its index."""
     first: int
     frames: int
     source: int
     """Id of the other clip."""
     source_first: int
     """Counted among the frames that the other has in chunks of its own."""
+
+    @classmethod
+    def whole(cls, stream: int, frames: int, source: int) -> "Run":
+        """Give the run that is all of a stream."""
+        return cls(stream, 0, frames, source, 0)
+
+
+RUN_COLUMNS = ", ".join(Run._fields)
 
 
 COLUMNS = ", ".join(Facts._fields)
@@ -186,7 +196,8 @@ def _chunk(clip: int, number: int, entry: Entry, mcz: Mcz) -> tuple[int, int, in
 def insert_runs(connection: Connection, clip: int, runs: Sequence[Run]) -> None:
     """Add runs of a clip."""
     connection.executemany(
-        "INSERT INTO runs(clip, first, frames, source, source_first) VALUES(?, ?, ?, ?, ?)",
+        "INSERT INTO runs(clip, stream, first, frames, source, source_first) "
+        "VALUES(?, ?, ?, ?, ?, ?)",
         [(clip, *run) for run in runs],
     )
 

@@ -138,16 +138,20 @@ def _sources(connection: sqlite3.Connection, clip: int) -> list[int]:
 
 
 def find_runs(
-    db: Database, values: Values, candidates: Sequence[int], models: Sequence[Place] = ()
+    db: Database,
+    stream: int,
+    values: Values,
+    candidates: Sequence[int],
+    models: Sequence[Place] = (),
 ) -> list[Run]:
-    """Find the frames that clips of a library have in chunks of their own.
+    """Find the frames that a stream of clips of a library has in chunks of their own.
 
     Parameters
     ----------
-    db
-        The library.
+    db, stream
+        The library, and the index of the stream.
     values
-        (F, C)
+        (F, C) of that stream.
     candidates
         Ids of clips to look at.
     models
@@ -167,14 +171,26 @@ def find_runs(
             break
         try:
             opened = OpenedClip(db, clip, models)
-            if not opened.streams or len(opened.streams[0].columns) != values.shape[1]:
+            if not _fits(opened, stream, values):
                 continue
-            rows = opened.own_rows().values
+            rows = opened.own_rows(stream).values
         except (MocapressError, OSError, sqlite3.Error):
             continue  # it is damaged, or gone: nothing is shared with it
         for shift in _shifts(hashes, row_hashes(rows)):
-            runs += _runs_at(values, hashes, rows, shift, clip, free)
+            runs += [
+                Run(stream, first, last - first, clip, first + shift)
+                for first, last in _equal(values, hashes, rows, shift, free)
+            ]
     return sorted(runs)
+
+
+def _fits(opened: OpenedClip, stream: int, values: Values) -> bool:
+    """Say whether a clip has a stream of as many columns that no codec has changed."""
+    return (
+        stream < len(opened.streams)
+        and len(opened.streams[stream].columns) == values.shape[1]
+        and opened.codec(stream).lossless
+    )
 
 
 def _shifts(hashes: Hashes, others: Hashes) -> list[int]:
@@ -192,9 +208,9 @@ def _shifts(hashes: Hashes, others: Hashes) -> list[int]:
     return [*dict.fromkeys([*frequent, 0])]
 
 
-def _runs_at(
-    values: Values, hashes: Hashes, rows: Values, shift: int, clip: int, free: NDArray[np.bool_]
-) -> list[Run]:
+def _equal(
+    values: Values, hashes: Hashes, rows: Values, shift: int, free: NDArray[np.bool_]
+) -> list[tuple[int, int]]:
     """Give the runs of frames i that are the rows i + shift; they are then no longer free."""
     first, last = max(0, -shift), min(len(values), len(rows) - shift)
     if first >= last:
@@ -208,5 +224,5 @@ def _runs_at(
         different = len(np.unique(hashes[begin:end]))
         if whole or (end - begin >= _LEAST_FRAMES and different >= _LEAST_DIFFERENT):
             free[begin:end] = False
-            runs.append(Run(begin, end - begin, clip, begin + shift))
+            runs.append((begin, end))
     return runs

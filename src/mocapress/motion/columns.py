@@ -20,6 +20,14 @@ def skeleton_columns(skeleton: Skeleton) -> tuple[Column, ...]:
     return tuple(columns)
 
 
+def numbered_columns(count: int, kinds: tuple[str, ...]) -> tuple[Column, ...]:
+    """Give columns in groups of these kinds, named by the number of their group, from 1 on."""
+    size = len(kinds)
+    return tuple(
+        Column(f"{i // size + 1}.{kinds[i % size]}", -1, kinds[i % size]) for i in range(count)
+    )
+
+
 def bone_columns(
     skeleton: Skeleton | None, bones: Sequence[tuple[str, int]], angle_unit: str | None = None
 ) -> tuple[Column, ...]:
