@@ -8,9 +8,9 @@ SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined,flo
 FUZZ_RUNS ?= 20000
 sources := $(wildcard core/*/*.cpp core/*/*.hpp)
 headers := $(filter %.hpp,$(sources)) $(wildcard core/exact/data/*)
-kernels := $(filter-out core/python/% core/check/% core/fuzz/%,$(filter %.cpp,$(sources)))
+kernels := $(filter-out core/python/% core/wasm/% core/check/% core/fuzz/%,$(filter %.cpp,$(sources)))
 
-.PHONY: demo test long check stub tests test-js browser sanitize fuzz bench wheel clean
+.PHONY: demo test long check stub tests test-js browser wasm sanitize fuzz bench wheel clean
 
 demo: $(VENV)/.installed
 	@PYTHONPATH=benchmarks $(BIN)/python -m mocapress_bench demo
@@ -27,7 +27,7 @@ check: $(VENV)/.built
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	@$(BIN)/clang-format --dry-run --Werror $(sources)
-	@echo $(filter-out core/python/%,$(filter %.cpp,$(sources))) | xargs -n 4 -P 2 sh -c \
+	@echo $(filter-out core/python/% core/wasm/%,$(filter %.cpp,$(sources))) | xargs -n 4 -P 2 sh -c \
 	    '$(BIN)/clang-tidy --quiet "$$@" -- -std=c++20 -Icore 2>/dev/null' clang-tidy
 	@$(STUB) build/_core.pyi && cmp build/_core.pyi src/mocapress/_core.pyi || { \
 	    echo "the bindings have changed: make stub writes src/mocapress/_core.pyi"; exit 1; }
@@ -38,7 +38,7 @@ STUB := $(BIN)/python -m nanobind.stubgen -q -m mocapress._core -o
 stub: $(VENV)/.built
 	$(STUB) src/mocapress/_core.pyi
 
-tests: $(VENV)/.built corpus browser
+tests: $(VENV)/.built $(if $(CI),$(VENV)/.zig) corpus browser
 	MOCAPRESS_CORPUS=$(if $(wildcard corpus/.version),$(CURDIR)/corpus,$(MOCAPRESS_CORPUS)) \
 	    $(BIN)/pytest
 
@@ -73,6 +73,24 @@ browser:
 	            --no-install-recommends nodejs chromium fonts-dejavu-core >/dev/null; \
 	    else false; fi; } || echo "no node or no chromium (Debian: apt-get install nodejs chromium)"
 
+# The core's decoders for the page, one module a codec; viewer/wasm/ keeps what this builds.
+wasm_modules := $(patsubst core/wasm/%.cpp,build/wasm/%.wasm,$(filter-out %/module.cpp,$(wildcard core/wasm/*.cpp)))
+ZIG := $(BIN)/python -m ziglang c++ -target wasm32-wasi -std=c++20 -ffp-contract=off -fno-math-errno -fno-exceptions \
+    -fno-rtti -msimd128 -flto -Wall -Wextra -Icore -Wl,--strip-all
+
+wasm: $(wasm_modules)
+	install -m 644 $^ viewer/wasm/
+
+$(wasm_modules): build/wasm/%.wasm: $(wildcard core/wasm/*) $(kernels) $(headers) | $(VENV)/.zig
+	@mkdir -p $(@D)
+	$(ZIG) -Os -mexec-model=reactor core/wasm/module.cpp core/wasm/$*.cpp \
+	    $(wildcard core/$*/*.cpp core/$*_*/*.cpp core/coding/*.cpp core/numbers/*.cpp) -o $@
+
+# The compiler for WebAssembly has 0.4 GB; no user needs it, and developers only for `make wasm`.
+$(VENV)/.zig: | $(VENV)/.built
+	$(BIN)/pip install --quiet --disable-pip-version-check 'mocapress[wasm]'
+	@touch $@
+
 # A codec's kernels built in other ways, build/check/WAY/CODEC: each must print what
 # tests/golden/kernels_CODEC.txt says. MOCAPRESS_NO_CLONES turns run-time dispatch off, so that a
 # way is what its flags say; the usual one has it, and emulated processors choose.
@@ -89,10 +107,13 @@ check_aarch64 := aarch64-linux-gnu-g++ -O3 -static $(EXACT) $(ONE)
 # Not allowed; that it prints something else shows that the check sees it.
 check_contracted := $(CXX) -O3 -mavx2 -mfma $(EXACT) $(ONE) -ffp-contract=fast
 
+# With the module's own flags, run by Node.
+check_wasm := $(ZIG) -O2 $(ONE)
+
 build/check/%: $(wildcard core/check/*) $(kernels) $(headers)
 	@mkdir -p $(@D)
 	$(check_$(*D)) core/check/$(*F).cpp $(wildcard core/$(*F)/*.cpp core/$(*F)_*/*.cpp) \
-	    core/numbers/line.cpp core/numbers/powers.cpp -o $@
+	    core/coding/record.cpp core/numbers/line.cpp core/numbers/powers.cpp core/numbers/text.cpp -o $@
 
 bench: $(VENV)/.built corpus
 	$(BIN)/mocapress bench lossless $(if $(wildcard corpus/.version),corpus/amc/cmu)

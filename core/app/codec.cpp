@@ -4,10 +4,10 @@
 #include <bit>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 #include <tuple>
 
 #include "app/correction.hpp"
+#include "coding/fail.hpp"
 #include "coding/sides.hpp"
 
 namespace mocapress::app {
@@ -104,7 +104,7 @@ std::vector<std::size_t> coding_order(std::span<const Column> columns) {
   for (std::size_t c = 0; c < columns.size(); ++c) {
     for (std::int64_t next = static_cast<std::int64_t>(c); next >= 0;) {
       if (static_cast<std::size_t>(next) >= columns.size() || line.size() > columns.size()) {
-        throw std::invalid_argument("the parents of the columns are no tree");
+        fail("the parents of the columns are no tree");
       }
       if (placed[next]) break;
       line.push_back(static_cast<std::size_t>(next));
@@ -214,10 +214,10 @@ void code_columns(Side& side, Columns& matrix, std::size_t frames, std::span<con
       column[j] = correction.code(side, static_cast<Float>(column[j]), predict(j));
     }
     if constexpr (Side::kReading) {
-      if (!side.sound()) throw std::invalid_argument("the values are cut off");
+      if (!side.sound()) fail("the values are cut off");
     }
   });
-  if (!corrections.sound()) throw std::invalid_argument("a correction leaves its range");
+  if (!corrections.sound()) fail("a correction leaves its range");
 }
 
 // Writes the values row by row, moved to their lines.
@@ -274,14 +274,14 @@ Bytes encode(const double* values, std::size_t frames, std::span<const Column> c
 void decode(ByteView payload, double* values, std::size_t frames, std::span<const Column> columns,
             const Parameters& parameters) {
   const std::size_t indices = index_size(frames, columns.size(), parameters);
-  if (indices > payload.size()) throw std::invalid_argument("the alpha indices are cut off");
+  if (indices > payload.size()) fail("the alpha indices are cut off");
   const Bytes choices =
       unpack(payload.first(indices), clusters_of(frames, parameters.cluster) * columns.size(),
              index_bits(parameters));
   RangeReading side(payload.subspan(indices));
   Columns matrix(frames, columns);
   code_columns(side, matrix, frames, columns, parameters, choices);
-  if (!side.exhausted()) throw std::invalid_argument("bytes are left over after the values");
+  if (!side.exhausted()) fail("bytes are left over after the values");
   restore(matrix, values, frames, columns);
 }
 

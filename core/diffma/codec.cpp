@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <stdexcept>
+
+#include "coding/fail.hpp"
 
 namespace mocapress::diffma {
 namespace {
@@ -216,11 +217,11 @@ Scan scan(std::string_view opcodes, int bits) {
 void decode(std::string_view opcodes, std::span<const double> table, const Parameters& parameters,
             std::span<double> values) {
   const Scan asked = scan(opcodes, parameters.bits);
-  if (asked.fault != Fault::none) throw std::invalid_argument("no string of opcodes");
+  if (asked.fault != Fault::none) fail("no string of opcodes");
   const std::size_t first = values.empty() ? 0 : 1;
-  if (asked.steps + first != values.size()) throw std::invalid_argument("wrong number of opcodes");
+  if (asked.steps + first != values.size()) fail("wrong number of opcodes");
   if (asked.raws + first != table.size()) {
-    throw std::invalid_argument("look-up table too short or too long");
+    fail("look-up table too short or too long");
   }
   if (values.empty()) return;
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <stdexcept>
 #include <utility>
 
+#include "coding/fail.hpp"
 #include "coding/sides.hpp"
 #include "exact/model.hpp"
 #include "exact_fast/codec.hpp"
@@ -109,7 +109,7 @@ void decode(ByteView payload, double* values, std::size_t frames, const Clip& cl
     }
   }
   if (whole ? !side.exhausted() : !side.sound()) {
-    throw std::invalid_argument("the payload does not decode");
+    fail("the payload does not decode");
   }
 }
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
+#include "coding/fail.hpp"
 #include "numbers/arithmetic.hpp"
 
 namespace mocapress::exact {
@@ -46,7 +46,7 @@ Kinematics::Kinematics(std::span<const Column> columns) : channel_of_(columns.si
     if (columns[c].place < 0) continue;
     const auto place = static_cast<std::size_t>(columns[c].place);
     if (place >= kSkeletonChannels || std::exchange(taken[place], true)) {
-      throw std::invalid_argument("a place that the skeleton does not have");
+      fail("a place that the skeleton does not have");
     }
     const int bone = kCmu.channels[place].bone;
     Channel channel{
@@ -54,7 +54,7 @@ Kinematics::Kinematics(std::span<const Column> columns) : channel_of_(columns.si
     for (std::size_t i = 0; i < channels_.size(); ++i) {
       if (!moves(static_cast<int>(channels_[i].bone), bone)) continue;
       if (channels_[i].before.size() != channel.before.size()) {
-        throw std::invalid_argument("a channel stands before those of the joint's parent");
+        fail("a channel stands before those of the joint's parent");
       }
       channel.before.push_back(i);
     }

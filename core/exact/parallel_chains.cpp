@@ -1,8 +1,8 @@
 #include "exact/parallel_chains.hpp"
 
 #include <array>
-#include <stdexcept>
 
+#include "coding/fail.hpp"
 #include "exact/chain.hpp"
 #include "numbers/vector_clones.hpp"
 
@@ -88,7 +88,7 @@ ParallelChains::ParallelChains(std::size_t chains, std::size_t size, double fadi
       fading_(fading),
       stride_(2 * size + size * (size - 1) / 2),
       blocks_(blocks_of(chains) * stride_) {
-  if (size > kMost) throw std::invalid_argument("more predictors of a column than there can be");
+  if (size > kMost) fail("more predictors of a column than there can be");
   for (std::size_t b = stride_ - size; b < blocks_.size(); b += stride_) {
     for (std::size_t j = 0; j < size; ++j) blocks_[b + j] += ridge;
   }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
+#include "coding/fail.hpp"
 #include "coding/sides.hpp"
 #include "exact/noise.hpp"
 #include "exact_fast/neighbours.hpp"
@@ -188,7 +188,7 @@ void decode_fast(ByteView payload, double* values, std::size_t frames, const Cli
     }
   });
   if (whole ? !side.exhausted() : !side.sound()) {
-    throw std::invalid_argument("the payload does not decode");
+    fail("the payload does not decode");
   }
 }
 

@@ -4,6 +4,8 @@ The check programs, core/check/CODEC.cpp, code made-up motion, decode it and pri
 Built as the package is, what they print is in tests/golden/; built otherwise, they must print that.
 """
 
+import importlib.util
+import os
 import platform
 import shutil
 import subprocess
@@ -40,6 +42,9 @@ WAYS = {
     "clang with AVX2 and FMA": Way("clang", "clang++", FUSED),
     "clang -O0": Way("clang_o0", "clang++"),
     "aarch64, emulated": Way("aarch64", "aarch64-linux-gnu-g++", under=("qemu-aarch64",)),
+    "WebAssembly, in Node": Way(
+        "wasm", under=("node", "--no-warnings", str(Path(__file__).with_name("run_wasi.mjs")))
+    ),
     "as the package is built, on the oldest x86-64, emulated": Way(
         "usual", under=("qemu-x86_64", "-cpu", "qemu64")
     ),
@@ -54,7 +59,12 @@ def printed(codec: str, way: Way) -> str:
     for command in (way.compiler, *way.under[:1]):
         if command and not shutil.which(command):
             pytest.skip(f"{command} is not installed")
-    if way.name not in ("usual", "o0", "clang_o0", "aarch64") and platform.machine() != "x86_64":
+    if way.name == "wasm":
+        need_zig()
+    if (
+        way.name not in ("usual", "o0", "clang_o0", "aarch64", "wasm")
+        and platform.machine() != "x86_64"
+    ):
         pytest.skip("for x86-64 only")
     if missing := way.features - features():
         pytest.skip(f"this processor has no {', '.join(sorted(missing))}")
@@ -62,6 +72,14 @@ def printed(codec: str, way: Way) -> str:
     subprocess.run(["make", "-s", program], cwd=ROOT, check=True, capture_output=True)
     whole = [*way.under, str(ROOT / program)]
     return subprocess.run(whole, capture_output=True, text=True, check=True).stdout
+
+
+def need_zig() -> None:
+    """Skip, but not in CI, where there is no compiler for WebAssembly."""
+    if importlib.util.find_spec("ziglang") is None:
+        if os.environ.get("CI"):
+            pytest.fail("no ziglang, which `make .venv/.zig` installs")
+        pytest.skip("no ziglang (pip install 'mocapress[wasm]')")
 
 
 def features() -> set[str]:
@@ -85,3 +103,15 @@ def test_the_check_sees_fused_multiply_adds(codec: str) -> None:
     """What would go unseen here would prove nothing above."""
     fused = printed(codec, Way("contracted", features=FUSED))
     assert fused != (GOLDEN / f"kernels_{codec}.txt").read_text()
+
+
+MODULES = sorted(path.stem for path in (ROOT / "core/wasm").glob("*.cpp") if path.stem != "module")
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_the_page_carries_what_the_sources_give(module: str) -> None:
+    need_zig()
+    built = f"build/wasm/{module}.wasm"
+    subprocess.run(["make", "-s", built], cwd=ROOT, check=True, capture_output=True)
+    committed = ROOT / "viewer/wasm" / f"{module}.wasm"
+    assert (ROOT / built).read_bytes() == committed.read_bytes(), "make wasm builds it anew"

@@ -4,10 +4,12 @@ import { basename } from "node:path";
 
 import { Kinematics } from "../../viewer/page/state/kinematics.js";
 import { readFiles } from "../../viewer/page/reading/files.js";
+import { assets } from "./assets.mjs";
 
 const paths = process.argv.slice(2);
-const { clips, errors } = readFiles(
+const { clips, errors } = await readFiles(
   paths.map((path) => ({ name: basename(path), bytes: readFileSync(path) })),
+  assets,
 );
 const made = clips.map((clip) => {
   const frames = [0, 1, clip.frames >> 1, clip.frames - 1];

@@ -106,8 +106,8 @@ test("broken skeletons name the line", () => {
   assert.throws(broken(/ {2}end\n:hier/, ":hier"), /a bone without end/);
 });
 
-test("of many dropped files each gives a clip or an error", () => {
-  const made = readFiles([
+test("of many dropped files each gives a clip or an error", async () => {
+  const made = await readFiles([
     { name: "a.amc", bytes: bytes("1\nroot 0 0 0 0 0 0\nhip 1 2\n") },
     { name: "02_01.amc", bytes: bytes("1\nroot 0 0 0 0 0 0\n") },
     { name: "02.asf", bytes: bytes(ASF) },
@@ -125,7 +125,7 @@ test("of many dropped files each gives a clip or an error", () => {
   assert.match(made.errors[1], /^a.diffma.json: \$.channels: expected an array; found nothing/);
 });
 
-test("damaged files give errors, no other exceptions, and end", () => {
+test("damaged files give errors, no other exceptions, and end", async () => {
   const source = bytes(`1\nroot 1 2 3 4 5 6\nhip 1 2\n2\nroot 1 2 3 4 5 6\nhip 1 2\n`);
   let state = 7;
   const random = (below) => (state = (state * 48271) % 2147483647) % below;
@@ -135,7 +135,7 @@ test("damaged files give errors, no other exceptions, and end", () => {
     for (const damaged of [amcBytes, asfBytes]) {
       if (damaged.length) damaged[random(damaged.length)] = random(256);
     }
-    const { clips, errors } = readFiles([
+    const { clips, errors } = await readFiles([
       { name: "a.amc", bytes: amcBytes },
       { name: "a.asf", bytes: asfBytes },
     ]);
@@ -143,10 +143,10 @@ test("damaged files give errors, no other exceptions, and end", () => {
   }
 });
 
-test("what a file claims is not believed", () => {
+test("what a file claims is not believed", async () => {
   const bones = Array.from({ length: 1000 }, (_, i) => `b${i} 1`).join("\n");
   const frames = Array.from({ length: 60000 }, (_, i) => i + 2).join("\n");
-  const made = readFiles([
+  const made = await readFiles([
     { name: "long.amc", bytes: bytes(`1\n${bones}\n${frames}\n`) },
     {
       name: "a.bvh",

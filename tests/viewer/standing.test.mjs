@@ -4,6 +4,7 @@ import { test } from "node:test";
 
 import { findBearings, turnUp } from "../../viewer/page/state/bearings.js";
 import { compare } from "../../viewer/page/state/comparison.js";
+import { placed } from "../../viewer/page/state/kinematics.js";
 import { Player } from "../../viewer/page/state/player.js";
 import { Take } from "../../viewer/page/state/take.js";
 
@@ -58,7 +59,7 @@ function inverse(turn) {
 
 for (const up of UPS) {
   test(`a figure with axis ${up} up stands upright, on the floor, of a person's size`, () => {
-    const take = new Take(figure(up, 10));
+    const take = new Take(placed(figure(up, 10)));
     assert.deepEqual(take.bearings.up, up);
     const place = [0, 0, 0];
     take.onStage(0, 1, place);
@@ -98,7 +99,7 @@ test("errors are distances", () => {
   const [a, b] = [figure([1, 1]), figure([1, 1])];
   b.channels[0] = b.channels[0].map((x, frame) => x + (frame === 7 ? 3 : 0));
   b.channels[2] = b.channels[2].map((x, frame) => x + (frame === 7 ? 4 : 0));
-  const made = compare(new Take(a), new Take(b));
+  const made = compare(new Take(placed(a)), new Take(placed(b)));
   assert.equal(made.largest, 5);
   assert.deepEqual(
     [...made.worst].filter((error) => error > 0),
@@ -108,7 +109,7 @@ test("errors are distances", () => {
   assert.ok(Math.abs(made.average - 5 / 50) < 1e-9);
   const other = figure([1, 1]);
   other.skeleton.joints[5].parent = 1;
-  assert.equal(compare(new Take(a), new Take(other)), null);
+  assert.equal(compare(new Take(placed(a)), new Take(placed(other))), null);
 });
 
 test("the player plays, steps and begins again", () => {
@@ -137,8 +138,8 @@ test("the player plays, steps and begins again", () => {
 test("a clip that no memory can hold is refused before anything is made", () => {
   const clip = figure([1, 1]);
   assert.throws(
-    () => new Take({ ...clip, frames: 1e7 }),
+    () => placed({ ...clip, frames: 1e7 }),
     /too many frames and joints.*found 10000000 x 6/,
   );
-  assert.throws(() => new Take({ ...clip, frames: 0 }), /no frames/);
+  assert.throws(() => new Take(placed({ ...clip, frames: 0 })), /no frames/);
 });

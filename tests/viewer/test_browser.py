@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,10 @@ from playwright.sync_api import Browser
 
 import mocapress as mp
 from mocapress.container import diffma_json
+from mocapress.motion.columns import skeleton_columns
 from mocapress.viewer import embed, page
+
+GOLDEN = Path(__file__).parents[1] / "golden"
 
 
 @pytest.fixture(scope="module")
@@ -212,6 +216,57 @@ def test_diffma_json_plays(visit: Visit, samples: Path, tmp_path: Path) -> None:
     assert visit.text(".notice").startswith("bad.diffma.json: $.params.bits: expected 1 to 12")
 
 
+def test_dropped_mcz_play(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    visit.open(page.document([]), tmp_path)
+    motion = tmp_path / "cmu_01_01.amc.mcz"
+    motion.write_bytes(mp.compress(samples / "cmu_01_01.amc"))
+    visit.drop(motion)
+    visit.until("document.querySelector('.notice')?.textContent.includes('drop the .asf with it')")
+    assert visit.text("#frame").endswith("/ 2751")
+    visit.drop(motion, samples / "cmu_01_01.asf")
+    visit.until("document.querySelector('.notice') === null")
+    visit.seek(0)
+    assert coloured(visit.pixels(), 2) > 500
+    visit.drop(GOLDEN / "v1_trained.bvh.mcz")
+    visit.until("document.querySelector('.notice')?.textContent.includes('needs a model')")
+    visit.drop(GOLDEN / "v1_trained.bvh.mcz", GOLDEN / "v1_trained.mcm", GOLDEN / "v1_learner.mcm")
+    visit.until("document.querySelector('#legend b').textContent === 'v1_trained.bvh.mcz'")
+    packed = diffma_json.named("a.diffma.json.xz", mp.to_json(samples / "freebvh.bvh"))
+    visit.drop(("a.diffma.json.xz", packed))
+    visit.until("document.querySelector('#frame').textContent.endsWith('/ 69')")
+    visit.drop(("cut.mcz", motion.read_bytes()[:5000]))
+    visit.until("document.querySelector('.notice') !== null")
+    assert visit.text(".notice").startswith("cut.mcz, byte 5000: the file is cut off")
+    assert visit.names() == ["a.diffma.json.xz"]
+
+
+def test_an_exported_page_says_which_decoder_it_lacks(
+    visit: Visit, samples: Path, tmp_path: Path
+) -> None:
+    made = clip(samples, "freebvh.bvh")
+    visit.open(page.document([made], assets=embed.assets([made])), tmp_path)
+    visit.until("document.body.dataset.frame > 3")
+    visit.drop(("a.mcz", mp.compress(samples / "mocapbank.bvh", "app")))
+    visit.until("document.querySelector('.notice') !== null")
+    assert "this page does not carry the decoder" in visit.text(".notice")
+    assert "wasm/app.wasm" in visit.text(".notice")
+
+
+def test_the_page_goes_on_while_a_file_is_read(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    visit.open(page.document([clip(samples, "freebvh.bvh")]), tmp_path)
+    made = mp.read(samples / "cmu_01_01.amc")
+    rows = np.resize(np.arange(made.frames), 20_000)
+    long = mp.compress(made.with_frames(made.values[rows], made.frame_time), "exact:level=9")
+    visit.page.evaluate(
+        "globalThis.drawn = 0; (function count() {"
+        " if (document.body.classList.contains('reading')) drawn += 1;"
+        " requestAnimationFrame(count); })()"
+    )
+    visit.drop(("long.mcz", long))
+    visit.until("document.querySelector('#frame').textContent.endsWith('/ 20000')")
+    assert visit.page.evaluate("drawn") > 1  # at most once, if reading held the page up
+
+
 DECODE = """async ([modules, text]) => {
     const urls = new Map();
     for (const [path, source] of modules) {
@@ -256,9 +311,12 @@ def test_a_broken_file_is_told_of(visit: Visit, samples: Path, tmp_path: Path) -
 
 def test_markup_in_names_is_text(visit: Visit, samples: Path, tmp_path: Path) -> None:
     markup = "<img src=x onerror=alert(1)></script><b>"
-    made = clip(samples, "freebvh.bvh") | {"name": markup}
-    for joint in made["exact"]["skeleton"]["joints"]:
-        joint["name"] = markup
+    plain = mp.read(samples / "freebvh.bvh")
+    assert plain.skeleton is not None
+    joints = tuple(replace(joint, name=markup) for joint in plain.skeleton.joints)
+    skeleton = replace(plain.skeleton, joints=joints)
+    columns = skeleton_columns(skeleton)
+    made = embed.exact(mp.Clip.of(plain.values, columns, plain.frame_time, skeleton), markup)
     visit.open(page.document([made, made, made], title=markup), tmp_path)
     visit.until("document.querySelectorAll('#cells span').length === 3")
     assert visit.names() == [markup] * 3

@@ -6,8 +6,7 @@ import { labelCells, legend, showKeys } from "./panels/labels.js";
 import { lengthText } from "./panels/lengths.js";
 import { Notices } from "./panels/notice.js";
 import { Timeline } from "./panels/timeline.js";
-import { embeddedClips } from "./reading/embedded.js";
-import { message, readFiles } from "./reading/files.js";
+import { message } from "./reading/files.js";
 import { paint, stagesOf } from "./scene/staging.js";
 import { Viewport } from "./scene/viewport.js";
 import { axisName } from "./state/bearings.js";
@@ -21,7 +20,9 @@ const MOST_CLIPS = 16;
 
 /** The page as a whole: what the controls do. */
 export class App {
-  constructor() {
+  /** @param {import("./work/reader.js").Reader} reader */
+  constructor(reader) {
+    this.reader = reader;
     this.at = (id) => document.getElementById(id);
     this.notices = new Notices(this.at("notices"));
     this.player = new Player();
@@ -37,15 +38,17 @@ export class App {
   }
 
   /** Show the clips that the page carries. */
-  openEmbedded(text) {
-    const { clips, errors } = embeddedClips(text);
+  async openEmbedded(text) {
+    const { clips, errors } = await this.reader.embedded(text);
     this.#open(clips, errors, "replace");
     this.player.play(clips.length > 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches);
   }
 
   /** Show files; of a file that is broken, a message says what is wrong with it. */
-  openFiles(files, how) {
-    const { clips, errors } = readFiles(files);
+  async openFiles(files, how) {
+    document.body.classList.add("reading");
+    const { clips, errors } = await this.reader.files(files);
+    document.body.classList.remove("reading");
     this.#open(clips, errors, how);
     if (clips.length) this.player.play(true);
   }
@@ -120,7 +123,7 @@ export class App {
     this.at("play").setAttribute("aria-pressed", String(player.playing));
     this.at("play").ariaLabel = player.playing ? "Pause" : "Play";
     this.at("speed").value = String(player.speed);
-    document.body.dataset.frame = String(frame);
+    if (lineup.takes.length) document.body.dataset.frame = String(frame);
   }
 
   #tick(before) {

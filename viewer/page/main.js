@@ -1,14 +1,18 @@
 import { App } from "./app.js";
 import { Notices } from "./panels/notice.js";
+import { Reader } from "./work/reader.js";
 
-let app;
-try {
-  app = new App();
-} catch (error) {
-  // three.js gives no kind of error of its own to tell by.
-  document.body.classList.add("empty");
-  new Notices(document.getElementById("notices")).show([
-    `This page draws with WebGL, which this browser does not offer (${error.message}).`,
-  ]);
+/** Begin with what the page carries; `worker` is to run work/worker.js. */
+export function start(worker) {
+  let app;
+  try {
+    app = new App(new Reader(worker));
+  } catch (error) {
+    // three.js gives no kind of error of its own to tell by.
+    document.body.classList.add("empty");
+    new Notices(document.getElementById("notices")).show([
+      `This page draws with WebGL, which this browser does not offer (${error.message}).`,
+    ]);
+  }
+  app?.openEmbedded(document.getElementById("clips").textContent);
 }
-app?.openEmbedded(document.getElementById("clips").textContent);

@@ -17,17 +17,15 @@ def view(
         Path | None,
         typer.Option("--export", help="Write the page to this file instead.", metavar="PAGE.html"),
     ] = None,
-    lossless: Annotated[
-        bool, typer.Option("--lossless", help="Export exact values instead of DiffMA.")
-    ] = False,
     max_error: Annotated[
-        float,
+        float | None,
         typer.Option(
             "--max-error",
-            help="Largest error of an exported value, in the file's units.",
+            help="Export DiffMA JSON in which no value is off by more, in the file's units, "
+            "instead of exact values.",
             min=1e-12,
         ),
-    ] = 0.01,
+    ] = None,
     asf: Asf = None,
     port: Annotated[
         int,
@@ -50,7 +48,7 @@ def view(
 
     inputs = files or []
     refuse_other_kinds(str(export) if export else None, (".html",), known_endings())
-    stated = None if lossless or export is None else max_error
+    stated = max_error if export else None
     name = ""
     try:
         if export:
@@ -59,13 +57,20 @@ def view(
         for path in inputs:
             name = str(path)
             with collecting():
-                clips.append(embed.file(path, asf_path=asf, max_error=stated, strict=not lenient))
+                clip = embed.file(
+                    path,
+                    asf_path=asf,
+                    max_error=stated,
+                    level=embed.LEVEL if export else embed.FAST,
+                    strict=not lenient,
+                )
+                clips.append(clip)
             for warning in kept():
                 say(f"warning: {warning}")
         title = " · ".join(path.name for path in inputs) or "mocapress"
         # Names of files need not be UTF-8, a page is.
         title = title.encode(errors="surrogateescape").decode(errors="replace")
-        document = page.document(clips, title)
+        document = page.document(clips, title, assets=embed.assets(clips) if export else None)
         if export:
             name = str(export)
             write_whole(export, document.encode(), force=force)

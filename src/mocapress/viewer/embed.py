@@ -1,23 +1,27 @@
-"""Clips as the page holds them: as DiffMA JSON, or with their exact values."""
+"""Clips as the page holds them: as ``.mcz`` files, or as DiffMA JSON."""
 
 import base64
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from mocapress import api
+from mocapress.api.opening import Opened
 from mocapress.codecs.diffma import DiffMA
-from mocapress.codecs.diffma.skeleton_json import skeleton_keys
-from mocapress.container import diffma_json
+from mocapress.codecs.exact import Exact
+from mocapress.container import Head, MczWriter, diffma_json, open_mcz
 from mocapress.errors import MocapressError, UnsupportedError
 from mocapress.motion import Clip
+from mocapress.motion.clip import MOTION
+from mocapress.records import Reader
 from mocapress.source import DIFFMA_JSON, MCZ, Source
+from mocapress.viewer import page
 
-MAX_ERROR = 0.01
-"""Of a value, in degrees or the file's unit of length: less than can be seen."""
+LEVEL = Exact().level
+FAST = 1
+"""Level for a page that is not kept."""
 
 
 def file(
@@ -25,6 +29,7 @@ def file(
     *,
     asf_path: Path | None = None,
     max_error: float | None = None,
+    level: int = LEVEL,
     strict: bool = True,
 ) -> dict[str, Any]:
     """Give the content of a motion file of any kind that mocapress reads.
@@ -32,11 +37,14 @@ def file(
     Parameters
     ----------
     path
-        A motion file, ``.mcz`` or DiffMA JSON; DiffMA JSON is embedded unchanged.
+        A motion file, ``.mcz`` or DiffMA JSON. The numbers of a ``.mcz`` stay as they are coded,
+        where the page has their decoder; DiffMA JSON is embedded unchanged.
     asf_path
         The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
     max_error
-        Largest error of a value, in its unit; None embeds exact values.
+        Largest error of a value, in its unit, as DiffMA JSON; None embeds exact values.
+    level
+        Of the codec ``exact``.
     strict
         Whether a file that has lost frames is refused, as by ``mocapress.read``.
 
@@ -56,28 +64,62 @@ def file(
         clip = read(path, asf_path=asf_path, strict=strict)
         if not clip.frames:
             raise UnsupportedError("no frames to be played")
-        if max_error is None:
-            return exact(clip, path.name)
-        return approximate(clip, max_error, path.name)
+        if max_error is not None:
+            return approximate(clip, max_error, path.name)
+        if source.kind == MCZ and (blob := _as_coded(source, clip)):
+            return _named(clip, path.name) | {"mcz": base64.b64encode(blob).decode()}
+        return exact(clip, path.name, level=level)
     except MocapressError as error:
         error.file = error.file or str(path)
         raise
 
 
-def exact(clip: Clip, name: str = "") -> dict[str, Any]:
-    """Give a clip with its exact values: float64, one channel after the other, in base64."""
-    values = np.ascontiguousarray(clip.values.T, dtype="<f8").tobytes()
-    content: dict[str, Any] = {
-        "names": [column.name for column in clip.columns],
-        "frames": clip.frames,
-        "values": base64.b64encode(values).decode(),
-    }
-    if clip.frame_time is not None:
-        content["frameTime"] = float(clip.frame_time)
-    if clip.skeleton is not None:
-        places = [(column.joint, column.kind) for column in clip.columns]
-        content["skeleton"] = skeleton_keys(clip.skeleton, places)
-    return _named(clip, name) | {"exact": content}
+def exact(clip: Clip, name: str = "", *, level: int = LEVEL) -> dict[str, Any]:
+    """Give a clip's first stream, coded by ``exact``.
+
+    Raises
+    ------
+    UnsupportedError
+        When a ``.mcz`` cannot hold the clip.
+
+    """
+    blob = api.compress(Clip({MOTION: clip.main}, clip.skeleton), Exact(level=level))
+    return _named(clip, name) | {"mcz": base64.b64encode(blob).decode()}
+
+
+def assets(clips: Sequence[dict[str, Any]]) -> list[str]:
+    """Give the names of the binary files that a page of these clips needs."""
+    codecs, methods = set(), set()
+    for content in clips:
+        if "mcz" in content:
+            blob = base64.b64decode(content["mcz"])
+            head = open_mcz(Source(blob)).head
+            codecs |= {stream.codec.id for stream in head.streams} if head else set()
+            methods.add(Reader(blob[_HEAD:], "head").bytes()[0])
+    return page.assets_for(codecs, methods)
+
+
+_HEAD = 6
+"""Where the length of the first section stands."""
+
+
+def _as_coded(source: Source, clip: Clip) -> bytes | None:
+    """Give the first stream of a ``.mcz``, loaded as ``clip``, with its chunks as they are.
+
+    None where the page cannot decode it.
+    """
+    mcz = Opened(source).mcz
+    stream = mcz.head.streams[0] if mcz.head else None
+    known = stream and f"wasm/{stream.codec.id}.wasm" in page.asset_names()
+    if stream is None or not known or stream.model or not mcz.closed:
+        return None
+    parts: list[bytes] = []
+    writer = MczWriter(parts.append)
+    writer.head(Head((replace(stream, columns=clip.columns),), clip.skeleton))
+    for entry in mcz.of_stream[0]:
+        writer.chunk(mcz.read_chunk(entry))
+    writer.end()
+    return b"".join(parts)
 
 
 def approximate(clip: Clip, max_error: float, name: str = "") -> dict[str, Any]:
@@ -90,14 +132,14 @@ def approximate(clip: Clip, max_error: float, name: str = "") -> dict[str, Any]:
 
     """
     text = diffma_json.to_json(clip, DiffMA(max_error=max_error, per="channel"))
-    return _named(clip, name) | {"diffma": json.loads(text), "maxError": max_error}
+    # An AMC can be in radians whose skeleton is in degrees.
+    unit = next((column.unit for column in clip.columns if column.kind[:1] == "r"), "")
+    made = _named(clip, name) | {"diffma": json.loads(text), "maxError": max_error}
+    return made | {"angleUnit": unit} if unit in ("deg", "rad") else made
 
 
 def _named(clip: Clip, name: str) -> dict[str, Any]:
-    # An AMC can be in radians whose skeleton is in degrees.
-    unit = next((column.unit for column in clip.columns if column.kind[:1] == "r"), "")
-    made = {"name": name or clip.name or "clip"}
-    return made | {"angleUnit": unit} if unit in ("deg", "rad") else made
+    return {"name": name or clip.name or "clip"}
 
 
 def _document(source: Source) -> dict[str, Any]:

@@ -155,8 +155,13 @@ function readValues(scanner, values, first, bone, fail) {
   if (!scanner.lineEnds()) fail(expected);
 }
 
-/** Joint and kind of each column: by name, else by name without regard to case. */
-function columnsOf(skeleton, bones) {
+/**
+ * Joint and kind of each column: by name, else by name without regard to case.
+ *
+ * @param {import("./skeleton.js").Skeleton} skeleton
+ * @param {{name: string, count: number}[]} bones in the order of the columns
+ */
+export function columnsOf(skeleton, bones) {
   const { joints } = skeleton;
   // Bones without degrees of freedom usually have no values.
   const order = (group) => group.sort((a, b) => !joints[a].channels.length - !joints[b].channels.length);

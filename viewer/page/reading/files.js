@@ -1,25 +1,30 @@
 import { decode, DiffmaError } from "../../diffma/diffma.js";
+import { MczError } from "../../mcz/error.js";
+import { unpackXz } from "../../mcz/xz.js";
 import { parseAmc } from "./amc.js";
 import { parseAsf } from "./asf.js";
 import { parseBvh } from "./bvh.js";
 import { FileError } from "./file_error.js";
+import { readMcz } from "./mcz.js";
 import { latin1 } from "./scanner.js";
 import { channelNames } from "./skeleton.js";
 
+const MOST_JSON = 2 ** 29; // bytes: as long as a text can be in a browser
+
 /**
- * Read dropped files.
+ * Read dropped files. Skeletons and models are there for the others.
  *
  * @param {{name: string, bytes: Uint8Array}[]} files
- * @returns {{clips: import("./clip.js").Clip[], errors: string[]}}
+ * @param {import("../../mcz/assets.js").Assets} assets
+ * @returns {Promise<{clips: import("./clip.js").Clip[], errors: string[]}>}
  */
-export function readFiles(files) {
+export async function readFiles(files, assets) {
   const clips = [];
   const errors = [];
-  const skeletons = files.filter((file) => ending(file) === "asf");
-  const motions = files.filter((file) => ending(file) !== "asf");
-  for (const file of motions.length ? motions : skeletons) {
+  const motions = files.filter((file) => !["asf", "mcm"].includes(ending(file)));
+  for (const file of motions.length ? motions : files) {
     try {
-      clips.push({ ...readFile(file, skeletons), name: file.name });
+      clips.push({ ...(await readFile(file, files, assets)), name: file.name });
     } catch (error) {
       errors.push(message(error, file.name));
     }
@@ -27,21 +32,33 @@ export function readFiles(files) {
   return { clips, errors };
 }
 
-function readFile(file, skeletons) {
+async function readFile(file, files, assets) {
+  const among = (kind) => files.filter((other) => ending(other) === kind);
   switch (ending(file)) {
     case "bvh":
       return parseBvh(file.bytes);
     case "amc": {
-      const beside = skeletonOf(file, skeletons);
+      const beside = skeletonOf(file, among("asf"));
       return parseAmc(file.bytes, beside ? readSkeleton(beside) : null);
     }
     case "json":
       return fromDiffma(new TextDecoder().decode(file.bytes));
+    case "xz": {
+      const xz = await assets.module("vendor/xz/xz.wasm");
+      return fromDiffma(new TextDecoder().decode(unpackXz(xz, file.bytes, MOST_JSON)));
+    }
+    case "mcz": {
+      const beside = skeletonOf(file, among("asf"));
+      const models = among("mcm").map(({ bytes }) => bytes);
+      return readMcz(file.bytes, models, beside ? readSkeleton(beside) : null, assets);
+    }
+    case "mcm":
+      throw new FileError("a model without motion", { expected: "a .mcz dropped with it" });
     case "asf":
       throw new FileError("a skeleton without motion", { expected: "an .amc dropped with it" });
     default:
       throw new FileError("not a file that this page plays", {
-        expected: ".bvh, .amc with its .asf, or .diffma.json",
+        expected: ".bvh, .amc with its .asf, .mcz, or .diffma.json",
       });
   }
 }
@@ -68,7 +85,10 @@ export function fromDiffma(document) {
 /** The message for a user. */
 export function message(error, file) {
   if (error instanceof FileError) return error.of(file).message;
-  if (error instanceof DiffmaError) return `${file}: ${error.message}`;
+  if (error instanceof MczError && error.message.startsWith("byte ")) {
+    return `${file}, ${error.message}`;
+  }
+  if (error instanceof MczError || error instanceof DiffmaError) return `${file}: ${error.message}`;
   if (error instanceof RangeError) return `${file}: too large for this browser's memory`;
   throw error;
 }
@@ -98,5 +118,5 @@ function ending(file) {
 }
 
 function stemOf(file) {
-  return file.name.toLowerCase().replace(/\.[^.]*$/, "");
+  return file.name.toLowerCase().replace(/\.mcz$/, "").replace(/\.[^.]*$/, "");
 }

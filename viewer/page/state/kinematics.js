@@ -1,5 +1,36 @@
 import { FileError } from "../reading/file_error.js";
 
+// Places of points that fit a browser's memory: three hours of a person at 120 frames a second.
+const MOST_PLACES = 5e7;
+
+/**
+ * @typedef {import("../reading/clip.js").Clip & {
+ *   parents: number[], positions: Float32Array}} PlacedClip
+ * parents: of each point, joints before end sites, its parent's index, -1 for a root;
+ * positions: (F, P, 3) in the file's units; both empty without a skeleton
+ */
+
+/**
+ * Place the points of all frames.
+ *
+ * @param {import("../reading/clip.js").Clip} clip
+ * @returns {PlacedClip}
+ * @throws {FileError} when its skeleton cannot be placed, or has too many points
+ */
+export function placed(clip) {
+  if (!clip.skeleton) return { ...clip, parents: [], positions: new Float32Array(0) };
+  const kinematics = new Kinematics(clip);
+  const { parents } = kinematics;
+  if (clip.frames * parents.length > MOST_PLACES) {
+    throw new FileError("too many frames and joints to be shown", {
+      file: clip.name,
+      expected: `a product of at most ${MOST_PLACES}`,
+      found: `${clip.frames} x ${parents.length}`,
+    });
+  }
+  return { ...clip, parents, positions: kinematics.positions() };
+}
+
 /**
  * Forward kinematics of one clip, by the conventions of docs/decisions/002-kinematics.md: a joint
  * turns by the product of its channels' turns, about axes already turned (BVH), or about the fixed

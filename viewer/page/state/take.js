@@ -1,17 +1,14 @@
 import { findBearings, turnUp } from "./bearings.js";
 import { secondsPerFrame } from "../reading/clip.js";
 import { FileError } from "../reading/file_error.js";
-import { Kinematics } from "./kinematics.js";
 
-// Places of points that fit a browser's memory: three hours of a person at 120 frames a second.
-const MOST_PLACES = 5e7;
 const SMOOTHING = 0.6; // seconds over which the way that a camera follows is averaged
 
 /** A clip made ready to be played: placed in space, upright, scaled, on the floor. */
 export class Take {
   /**
-   * @param {import("../reading/clip.js").Clip} clip
-   * @throws {FileError} when its skeleton cannot be placed
+   * @param {import("./kinematics.js").PlacedClip} clip
+   * @throws {FileError} when it has no frames
    */
   constructor(clip) {
     if (clip.frames === 0) throw new FileError("no frames", { file: clip.name });
@@ -19,17 +16,9 @@ export class Take {
     this.name = clip.name ?? "clip";
     this.frames = clip.frames;
     this.frameTime = secondsPerFrame(clip);
-    this.kinematics = clip.skeleton ? new Kinematics(clip) : null;
-    this.parents = this.kinematics?.parents ?? [];
+    this.parents = clip.parents;
     this.points = this.parents.length;
-    if (this.frames * this.points > MOST_PLACES) {
-      throw new FileError("too many frames and joints to be shown", {
-        file: clip.name,
-        expected: `a product of at most ${MOST_PLACES}`,
-        found: `${this.frames} x ${this.points}`,
-      });
-    }
-    this.positions = this.kinematics?.positions() ?? new Float32Array(0);
+    this.positions = clip.positions;
     this.jointNames = clip.skeleton ? clip.skeleton.joints.map((joint) => joint.name) : [];
     this.standAs(findBearings(this.positions, this.points, this.jointNames));
   }

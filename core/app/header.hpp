@@ -1,0 +1,17 @@
+// The codec header of `app`: parent and precision of every column (docs/format.md, "app").
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "app/codec.hpp"
+#include "coding/bit.hpp"
+#include "numbers/text.hpp"
+
+namespace mocapress::app {
+
+// The columns of a clip whose source printed them in these formats. `fail`s where the header is not
+// one of so many columns.
+std::vector<Column> read_header(ByteView header, std::span<const NumberFormat> formats);
+
+}  // namespace mocapress::app
