@@ -8,10 +8,11 @@ import signal
 import tarfile
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
-from conftest import amc_of  # type: ignore[attr-defined]
 from running import mocapress, process, started
+from takes import amc_of
 
 import mocapress as mp
 
@@ -92,7 +93,8 @@ def test_extracting_overwrites_nothing_unasked(filled: Path, tmp_path: Path) -> 
 
 
 def archive(path: Path, members: list[tuple[str, bytes]], mode: str) -> None:
-    with tarfile.open(path, f"w:{mode}") as made:
+    kind: Any = f"w:{mode}"
+    with tarfile.open(path, kind) as made:
         for name, data in members:
             entry = tarfile.TarInfo(name)
             entry.size, entry.mtime = len(data), 1_234_567_890

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import amc_of  # type: ignore[attr-defined]
+from takes import amc_of
 
 import mocapress as mp
 from mocapress.library import Library

@@ -24,6 +24,8 @@ from mocapress.source import Named, Source
 
 # Below this size, or above this share of the original, the general-purpose way is tried as well.
 _SMALL = 2**15
+# Files of stored numbers, unlike text, may repeat themselves.
+_SMALL_OF_NUMBERS = 2**23
 _POOR = 0.4
 
 
@@ -146,8 +148,9 @@ def compress_parts(
 ) -> Compressed:
     """Compress a file that was taken apart; see ``compress`` and ``taken_apart``."""
     data = source.data
-    blob, loss = None, None
+    blob, loss, small = None, None, _SMALL
     if parts is not None:
+        small = _SMALL if parts.stored is None else _SMALL_OF_NUMBERS
         warning = _warning_of(parts, source)
         reason = unfit(parts, len(data))
         if reason:
@@ -171,7 +174,7 @@ def compress_parts(
             found, failure = first_that_works(codec, work)
             blob, loss = found or (None, None)
             warning = "; ".join(filter(None, (failure, warning))) or None
-    if blob is None or len(data) < _SMALL or len(blob) > _POOR * len(data):
+    if blob is None or len(data) < small or len(blob) > _POOR * len(data):
         plain = _compress_plain(source, notes or {})
         if blob is None or len(plain) < len(blob):
             blob, loss = plain, None

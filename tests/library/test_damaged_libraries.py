@@ -5,8 +5,8 @@ import sqlite3
 from pathlib import Path
 
 import pytest
-from conftest import amc_of  # type: ignore[attr-defined]
 from running import mocapress
+from takes import amc_of
 
 import mocapress as mp
 
@@ -58,7 +58,7 @@ def test_a_damaged_page_costs_the_clips_on_it(
     owners = pages_of(data, tmp_path)
     choice = random.Random(7)
     path, lost_most = tmp_path / "damaged.mocapdb", 0
-    of_tables = {}
+    of_tables: dict[str, list[int]] = {}
     for number, owner in sorted(owners.items()):
         if number > 1 and owner != "sqlite_schema":
             of_tables.setdefault(owner, []).append(number)

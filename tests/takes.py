@@ -1,10 +1,4 @@
-"""Clips made for libraries: takes with their cuts, in AMC, whose rows are printed alike."""
-
-from pathlib import Path
-
-import pytest
-
-from mocapress.library import Library, open_library
+"""AMC files made of the frames of a take, whose rows are printed alike."""
 
 
 def rows_of(amc: bytes) -> tuple[bytes, list[bytes]]:
@@ -19,13 +13,3 @@ def rows_of(amc: bytes) -> tuple[bytes, list[bytes]]:
 def amc_of(header: bytes, rows: list[bytes], number: int = 1) -> bytes:
     """Print frames, counted from ``number``."""
     return header + b"".join(b"%d\n%s\n" % (number + i, row) for i, row in enumerate(rows))
-
-
-@pytest.fixture(scope="session")
-def take(samples: Path) -> tuple[bytes, list[bytes]]:
-    return rows_of((samples / "cmu_01_01.amc").read_bytes())
-
-
-@pytest.fixture
-def library(tmp_path: Path) -> Library:
-    return open_library(tmp_path / "library.mocapdb", "a")
