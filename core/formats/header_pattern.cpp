@@ -42,7 +42,9 @@ std::int64_t braces(std::string_view text) {
 
 const std::string* word_at(const std::vector<std::optional<std::string>>& words,
                            std::size_t index) {
-  return index < words.size() && words[index] ? &*words[index] : nullptr;
+  if (index >= words.size()) return nullptr;
+  const std::optional<std::string>& word = words[index];
+  return word ? &*word : nullptr;
 }
 
 std::string printed(double value, const NumberFormat& format) {
