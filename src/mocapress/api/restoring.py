@@ -145,7 +145,7 @@ def layout_of(opened: Opened, original: Original, rows: int) -> Layout:
         opened.frames(),
         tuple(column.decimal or SHORTEST for column in stream.columns),
         references(opened, stream),
-        limits.most_layout(original.size),
+        limits.most_layout(original.size, len(original.packed)),
         rows,
     )
 
