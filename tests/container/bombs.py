@@ -24,10 +24,11 @@ from mocapress.container.chunks import CodedChunk, Entry
 from mocapress.container.original import write_companion
 from mocapress.container.sections import section
 from mocapress.container.tags import Tag
-from mocapress.formats.layout import Layout, RowTemplate
+from mocapress.formats.layout import Layout
 from mocapress.formats.layout_record import write_layout
 from mocapress.formats.number_formats import SHORTEST
 from mocapress.formats.patterns import References
+from mocapress.formats.row_templates import RowTemplate
 from mocapress.motion import Column, Stream
 from mocapress.motion.columns import numbered_columns
 from mocapress.records import Writer
@@ -321,8 +322,8 @@ def couplings_of_many_parts() -> bytes:
 
 @bomb
 def masks() -> bytes:
-    """Two thousand masks of a million frames, all of them empty."""
+    """Two thousand masks of a million frames, all of them full."""
     count = 2000
     header = [record(0), record(1, 1), record(0), record(0), record(0), record(1, 0, 1), record(0)]
     header += [record(count), bytes(8 * count), record(1, 0), record(1, 0), record(0)]
-    return of_codec_header(1, 2**20, b"".join(header), bytes(count))
+    return of_codec_header(1, 2**20, b"".join(header), b"\1\0" * count)
