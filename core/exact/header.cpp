@@ -298,6 +298,8 @@ Start read_start(ByteView model, const Header& header) {
 void decode(ByteView payload, double* values, std::size_t frames, std::size_t columns,
             const Header& header, int level, const Start& start) {
   const std::size_t coded = header.coded.size();
+  // A number costs at least log2(65536 / 65512) bits.
+  if (coded * frames > (payload.size() + 64) << 14) fail("the chunk is cut off");
   std::vector<double> rows(frames * coded);
   if (coded > 0 || !payload.empty()) {
     decode(payload, rows.data(), frames, Clip{header.columns, header.couplings, level, start});

@@ -1,7 +1,6 @@
 #include "wasm/module.hpp"
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "coding/fail.hpp"
@@ -41,8 +40,3 @@ extern "C" {
 }
 
 }  // extern "C"
-
-// What the standard library calls where it would print a message and abort; printing is large.
-namespace std::inline __1 {
-[[noreturn]] void __libcpp_verbose_abort(const char*, ...) noexcept { __builtin_trap(); }
-}  // namespace std::inline __1
