@@ -90,6 +90,8 @@ Ruler::Place Ruler::place(double number) const {
   if (!line_.holds(number, signed_place)) return {0, 0, false, false};
   const bool negative = signed_place < 0;
   const std::int64_t place = negative ? ~signed_place : signed_place;
+  // Places beyond what decimals reach stand for one number alone.
+  if (kind_ == Line::decimals && place >> most_bits_ != 0) return {0, 0, negative, false};
   std::int64_t marks = place;
   std::uint64_t rest = 0;
   if (kind_ != Line::decimals && !printed()) {

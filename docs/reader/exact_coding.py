@@ -99,7 +99,7 @@ class Coding:
         """Take a number by steps ("Steps")."""
         n = line.near(q)
         z = (line.number(n) - q) / step + 0.5
-        quarter = min(int(4 * z), 3) if z > 0 else 0
+        quarter = int(min(4 * z, 3)) if z > 0 else 0
         octave = self.octaves[min(max((bits64(b / step) >> 52) - 1023 + 6, 0), 7)]
         if not self.stream.bit(octave.none[quarter]):
             return line.number(n)

@@ -32,9 +32,8 @@ class Chain:
     def see(self, value: float) -> None:
         """See the next variable."""
         error = value - self.prediction()
-        if error:
-            for i, factor in enumerate(self.triangle[len(self.seen)], len(self.seen) + 1):
-                self.ahead[i] += error * factor
+        for i, factor in enumerate(self.triangle[len(self.seen)], len(self.seen) + 1):
+            self.ahead[i] += error * factor
         self.seen.append(value)
         self.errors.append(error)
 

@@ -18,7 +18,6 @@ from lines import (
     decade_of_number,
     of_bits64,
     power_of_ten,
-    rounded,
 )
 from streams import Bit, Intervals
 
@@ -162,7 +161,7 @@ class Payload:
     def _number(self, channel: Channel, p: float, s: int) -> tuple[float, float]:
         """Take a number; give it and its level ("Steps")."""
         line, unit = channel.line, channel.unit
-        size, exponent = (abs(p) + of_octaves(s)) / unit, 0
+        size, exponent = min((abs(p) + of_octaves(s)) / unit, 1e300), 0
         if line.printed:
             channel.step = max(line.step(size) * unit, 1e-300)
             n = line.near(p / unit)
@@ -219,11 +218,15 @@ class Payload:
             share = base ** min(lacking - at, 10 if base == 2 else 3)
             size = size * share + self.stream.uniform(share)
         exponent -= lacking
-        number = math.ldexp(size, exponent) if base == 2 else float(f"{size}e{exponent}")
-        if line.kind == SHORTEST32:
-            number = rounded(number, "shortest32", 0)
-        elif lacking == 0:
-            return sign * number, k * channel.step
+        if lacking == 0 and line.kind != SHORTEST32:
+            power = float(base) ** abs(exponent)
+            return sign * (size / power if exponent < 0 else size * power), k * channel.step
+        if base == 10:
+            number = float(f"{size}e{exponent}")
+        else:
+            more = size.bit_length() - digits
+            exponent_bits = exponent + more + (1075 if digits == 53 else 150)
+            number = line.number((exponent_bits - 1 << digits - 1) + (size >> more))
         return sign * number, sign * number * unit
 
 

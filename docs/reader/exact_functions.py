@@ -5,6 +5,8 @@ from collections.abc import Iterable
 from functools import reduce
 from operator import add
 
+from lines import bits64, of_bits64
+
 Vector = tuple[float, ...]
 """Of three components."""
 Matrix = tuple[Vector, ...]
@@ -34,10 +36,10 @@ def total(terms: Iterable[float]) -> float:
 
 def ln(x: float) -> float:
     """Elementary functions: the logarithm."""
-    mantissa, exponent = math.frexp(x)
-    v = 2 * mantissa - 1
+    exponent, mantissa = divmod(bits64(x), 2**52)
+    v = of_bits64(1023 << 52 | mantissa) - 1
     s = v * (1.441949 + v * (-0.7091 + v * (0.415023 + v * (-0.192401 + v * 0.044529))))
-    return (exponent - 1 + s) * LN2
+    return (exponent - 1023 + s) * LN2
 
 
 def exp(x: float) -> float:

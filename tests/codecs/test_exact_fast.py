@@ -152,6 +152,14 @@ def test_numbers_around_the_ends_of_decades_come_back(
 
 
 @pytest.mark.parametrize("level", LEVELS)
+def test_decimals_beyond_the_last_place_come_back(level: int) -> None:
+    line = (DECIMALS, 15)
+    values = on_line(walk(20, 2), line)
+    values[5:8, 0] = 2.0**62 / 1e15, -(2.0**62) / 1e15, 1e300
+    assert_comes_back(values, plan(2, line), level)
+
+
+@pytest.mark.parametrize("level", LEVELS)
 def test_crossing_a_decade_costs_little(level: int) -> None:
     """The same motion around 50 and around 100 costs nearly the same: steps change exactly."""
     line = (SIGNIFICANT, 6)
