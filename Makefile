@@ -10,7 +10,7 @@ sources := $(wildcard core/*/*.cpp core/*/*.hpp)
 headers := $(filter %.hpp,$(sources)) $(wildcard core/exact/data/*)
 kernels := $(filter-out core/python/% core/wasm/% core/check/% core/fuzz/%,$(filter %.cpp,$(sources)))
 
-.PHONY: demo test long check stub tests test-js browser wasm sanitize fuzz bench wheel clean
+.PHONY: demo test long check stub tests test-js browser compilers wasm sanitize bench wheel clean
 
 demo: $(VENV)/.installed
 	@PYTHONPATH=benchmarks $(BIN)/python -m mocapress_bench demo
@@ -38,7 +38,7 @@ STUB := $(BIN)/python -m nanobind.stubgen -q -m mocapress._core -o
 stub: $(VENV)/.built
 	$(STUB) src/mocapress/_core.pyi
 
-tests: $(VENV)/.built $(if $(CI),$(VENV)/.zig) corpus browser
+tests: $(VENV)/.built $(if $(CI),$(VENV)/.zig) corpus browser compilers
 	MOCAPRESS_CORPUS=$(if $(wildcard corpus/.version),$(CURDIR)/corpus,$(MOCAPRESS_CORPUS)) \
 	    $(BIN)/pytest
 
@@ -73,6 +73,17 @@ browser:
 	            --no-install-recommends nodejs chromium fonts-dejavu-core >/dev/null; \
 	    else false; fi; } || echo "no node or no chromium (Debian: apt-get install nodejs chromium)"
 
+# What builds the core in other ways and runs it there (tests/core/test_determinism.py). What is
+# missing and cannot be installed is skipped by the tests, which say so.
+compilers := clang++ aarch64-linux-gnu-g++ qemu-aarch64 x86_64-w64-mingw32-g++-posix wine
+compilers:
+	@command -v $(compilers) | wc -l | grep -qx $(words $(compilers)) || { \
+	    if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null && [ "$$(uname -m)" = x86_64 ]; then \
+	        apt-get -qq update && DEBIAN_FRONTEND=noninteractive apt-get -qq install -y \
+	            --no-install-recommends clang g++-aarch64-linux-gnu qemu-user \
+	            g++-mingw-w64-x86-64-posix wine wine64 >/dev/null; \
+	    else false; fi; } || echo "not all other compilers are there: $(compilers)"
+
 # The core's decoders for the page, one module a codec; viewer/wasm/ keeps what this builds.
 wasm_modules := $(patsubst core/wasm/%.cpp,build/wasm/%.wasm,$(filter-out %/module.cpp,$(wildcard core/wasm/*.cpp)))
 ZIG := $(BIN)/python -m ziglang c++ -target wasm32-wasi -std=c++20 -ffp-contract=off -fno-math-errno -fno-exceptions \
@@ -104,6 +115,7 @@ check_avx512 := $(CXX) -O3 -march=x86-64-v4 $(EXACT) $(ONE)
 check_clang := clang++ -O3 -mavx2 -mfma $(EXACT) $(ONE)
 check_clang_o0 := clang++ -O0 $(EXACT) $(ONE)
 check_aarch64 := aarch64-linux-gnu-g++ -O3 -static $(EXACT) $(ONE)
+check_windows := x86_64-w64-mingw32-g++-posix -O3 -static $(EXACT) $(ONE)
 # Not allowed; that it prints something else shows that the check sees it.
 check_contracted := $(CXX) -O3 -mavx2 -mfma $(EXACT) $(ONE) -ffp-contract=fast
 
@@ -112,14 +124,20 @@ check_wasm := $(ZIG) -O2 $(ONE)
 
 build/check/%: $(wildcard core/check/*) $(kernels) $(headers)
 	@mkdir -p $(@D)
-	$(check_$(*D)) core/check/$(*F).cpp $(wildcard core/$(*F)/*.cpp core/$(*F)_*/*.cpp) \
+	$(check_$(*D)) core/check/$(basename $(*F)).cpp \
+	    $(wildcard core/$(basename $(*F))/*.cpp core/$(basename $(*F))_*/*.cpp) \
 	    core/coding/record.cpp core/numbers/line.cpp core/numbers/powers.cpp core/numbers/text.cpp -o $@
 
 bench: $(VENV)/.built corpus
 	$(BIN)/mocapress bench lossless $(if $(wildcard corpus/.version),corpus/amc/cmu)
 
-wheel: $(VENV)/.built
-	$(BIN)/pip wheel --no-deps -w dist .
+# The wheel, tried in an environment that has nothing else.
+wheel: $(VENV)/.installed
+	rm -rf dist build/fresh
+	$(BIN)/pip wheel --quiet --no-deps -w dist .
+	$(PYTHON) -m venv build/fresh
+	build/fresh/bin/pip install --quiet dist/*.whl
+	cd build/fresh && bin/python $(CURDIR)/tests/wheel.py $(CURDIR)/samples
 
 # The developers' clips, where they are.
 .PHONY: corpus

@@ -18,7 +18,6 @@ BROKEN = {
     "junk": bytes(range(256)) * 8,
     "AMC without frames": b":FULLY-SPECIFIED\n:DEGREES\n",
     "AMC with text for a number": b":DEGREES\n1\nroot 1 2 three 4 5 6\n",
-    "AMC with NaN": b":DEGREES\n1\nroot 1 2 nan 4 5 6\n",
     "AMC with a number missing later": b":DEGREES\n1\nroot 1 2\n2\nroot 1\n",
     "AMC with a bone twice later": b":DEGREES\n1\nroot 1 2\n2\nroot 1 2\nroot 1 2\n",
     "BVH without motion": b"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\n",
@@ -36,10 +35,6 @@ BROKEN = {
         b"Frames: -3\nFrame Time: 0.1\n1\n2\n"
     ),
     "BVH with an unknown channel": b"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Wrotation\n}\n",
-    "BVH with infinity": (
-        b"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\n"
-        b"Frames: 1\nFrame Time: 0.1\ninf\n"
-    ),
     "BVH of a frame time without end": (
         b"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\n"
         b"Frames: 1\nFrame Time: 1e100000000\n1\n"
@@ -269,7 +264,7 @@ def test_what_was_missing_before_is_reported_after(
 
 def test_decoding_needs_no_parser(samples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever a later reader of BVH refuses, old files open."""
-    from mocapress.formats import bvh, bvh_hierarchy
+    from mocapress import _core
 
     data = (samples / "freebvh.bvh").read_bytes()
     blob, clip = mp.compress(data), mp.read(samples / "freebvh.bvh")
@@ -277,9 +272,7 @@ def test_decoding_needs_no_parser(samples: Path, monkeypatch: pytest.MonkeyPatch
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("text was parsed")
 
-    monkeypatch.setattr(bvh_hierarchy, "parse_hierarchy", refuse)
-    monkeypatch.setattr(bvh, "parse_hierarchy", refuse)
-    monkeypatch.setattr(bvh, "read_body", refuse)
+    monkeypatch.setattr(_core, "read_bvh", refuse)
     loaded = mp.load(blob)
     assert (loaded.columns, loaded.skeleton) == (clip.columns, clip.skeleton)
     assert mp.decompress(blob) == data

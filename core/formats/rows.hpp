@@ -10,51 +10,18 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/body.hpp"
 #include "numbers/text.hpp"
 
 namespace mocapress {
 
-// One row's items: `counts[i]` numbers behind word `words[i]` (empty: none), one line each. AMC
-// rows begin with a line that holds the frame's number.
-struct RowShape {
-  bool counter = false;
-  std::vector<std::string> words;
-  std::vector<std::uint32_t> counts;
-  std::size_t columns() const;
-};
+// Reads rows of so many numbers, a line each, from an offset on, until one differs or the text
+// ends. Where the last offset is, there is what could not be read, if anything.
+Body read_rows(std::string_view text, std::uint64_t begin, std::size_t columns);
 
-struct ColumnStatistics {
-  std::uint8_t least_decimals = 255;  // among numbers without an exponent
-  std::uint8_t most_decimals = 0;
-  std::uint8_t most_significant = 0;
-  std::uint8_t exponent_digits = 0;  // fewest seen, 0 where no exponent was
-  bool trailing_zero = false;
-  bool whole_without_point = false;
-  bool bare_point = false;
-  bool upper = false;
-};
-
-enum class RowEnd {
-  end_of_data,
-  word_differs,
-  number_expected,
-  line_end_expected,
-  limit,
-  counter_expected
-};
-
-struct ParsedRows {
-  std::vector<double> values;          // rows x columns
-  std::vector<std::int64_t> counters;  // one per row where the shape has a counter
-  std::vector<std::uint64_t> offsets;  // where each row's first item begins; one more for the end
-  std::vector<ColumnStatistics> statistics;
-  RowEnd end = RowEnd::end_of_data;
-  std::uint64_t error_offset = 0;  // where the item that ended the parsing stands
-  std::uint32_t error_item = 0;    // its line within the row
-};
-
-ParsedRows parse_rows(std::string_view data, std::uint64_t begin, const RowShape& shape,
-                      std::uint64_t most_rows);
+// Fills a row with the numbers from an offset on, up to the end of the line; `free`: wherever lines
+// end between and behind them.
+RowStop read_numbers(std::string_view text, std::uint64_t begin, bool free, Row& row);
 
 // Bytes of one kind of row: literals[0] slot literals[1] slot ... literals[n]. With a counter, the
 // first slot is the frame's number. `columns[k]` is the column of slot k; a width above 0 says that

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "numbers/powers.hpp"
 
@@ -34,6 +35,8 @@ const char* parse_slow(const char* text, const char* end, bool negative, std::in
   if (negative) value = -value;
   return end;
 }
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
 char* print_digits(char* out, std::uint64_t number, unsigned count) {
   for (char* place = out + count; place > out; number /= 10)
@@ -228,6 +231,40 @@ const char* parse_number(const char* text, const char* end, double& value, Numbe
   shape.significant = static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(significant, 255));
   // Decimal exponent of the leading digit: tells overflow from underflow.
   return parse_slow(start, p, negative, shift + significant, value);
+}
+
+const char* parse_non_finite(const char* text, const char* end, double& value, NumberShape& shape) {
+  const bool negative = text < end && *text == '-';
+  if (text < end && (*text == '-' || *text == '+')) ++text;
+  const auto begins = [&](const char* word) {
+    const char* p = text;
+    while (*word != 0 && p != end && (*p | (is_letter(*p) ? 0x20 : 0)) == *word) ++p, ++word;
+    return *word == 0 ? p : nullptr;
+  };
+  bool infinite = false;
+  const char* rest = nullptr;
+  for (const char* const word : {"1.#inf", "infinity", "inf"}) {
+    rest = begins(word);
+    infinite = rest != nullptr;
+    if (infinite) break;
+  }
+  for (const char* const word : {"1.#ind", "1.#qnan", "1.#snan", "1.#j", "nan"}) {
+    if (rest != nullptr) break;
+    rest = begins(word);
+  }
+  if (rest == nullptr) return nullptr;
+  if (text < end && *text == '1') {
+    while (rest < end && is_digit(*rest)) ++rest;
+  } else if (!infinite && rest < end && *rest == '(') {
+    while (rest < end && *rest != ')' && *rest > ' ') ++rest;
+    if (rest == end || *rest != ')') return nullptr;
+    ++rest;
+  }
+  shape = {};
+  shape.word = true;
+  using Limits = std::numeric_limits<double>;
+  value = std::copysign(infinite ? Limits::infinity() : Limits::quiet_NaN(), negative ? -1.0 : 1.0);
+  return rest;
 }
 
 char* print_number(char* out, double value, const NumberFormat& format) {

@@ -37,6 +37,7 @@ struct NumberShape {
   bool trailing_zero = false;  // the last decimal is 0
   bool bare_point = false;
   bool upper = false;
+  bool word = false;  // no number: `nan`, `inf` and the like
 };
 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -44,6 +45,10 @@ inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 // Parses a finite decimal number at `text`; gives the end of it, or nullptr where there is none or
 // where it exceeds the range of a double. The value is the nearest double, as strtod gives it.
 const char* parse_number(const char* text, const char* end, double& value, NumberShape& shape);
+
+// Parses a word that stands for no number, as C libraries print them: `nan`, `-nan(ind)`, `inf`,
+// `Infinity`, `1.#QNAN0`, `-1.#IND00`, `1.#INF`, in any case; gives the end of it, or nullptr.
+const char* parse_non_finite(const char* text, const char* end, double& value, NumberShape& shape);
 
 // Prints a value; gives the end of the text. `out` has room for kLongestNumber bytes.
 char* print_number(char* out, double value, const NumberFormat& format);

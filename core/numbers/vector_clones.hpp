@@ -4,7 +4,7 @@
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__) && defined(__linux__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(MOCAPRESS_NO_CLONES)
+    !defined(MOCAPRESS_NO_CLONES)
 #define MOCAPRESS_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #else
 #define MOCAPRESS_VECTOR_CLONES

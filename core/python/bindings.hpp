@@ -56,6 +56,8 @@ Given<Element> give(std::vector<Element> data) {
 }
 
 void bind_c3d(nb::module_& module);
+void bind_formats(nb::module_& module);
+void bind_motion(nb::module_& module);
 void bind_rows(nb::module_& module);
 void bind_app(nb::module_& module);
 void bind_exact(nb::module_& module);

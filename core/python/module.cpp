@@ -4,6 +4,8 @@
 NB_MODULE(_core, module) {
   module.doc() = "The compiled kernels; arrays are C-contiguous.";
   mocapress::bind_c3d(module);
+  mocapress::bind_formats(module);
+  mocapress::bind_motion(module);
   mocapress::bind_rows(module);
   mocapress::bind_app(module);
   mocapress::bind_exact(module);

@@ -48,38 +48,6 @@ std::vector<RowTemplate> row_templates(const std::vector<TemplateTuple>& tuples,
   return templates;
 }
 
-using Parsed = std::tuple<Given<double, 2>, Given<std::int64_t>, Given<std::uint64_t>,
-                          Given<std::uint8_t, 2>, int, std::size_t, std::size_t>;
-
-Parsed bound_parse_rows(const nb::bytes& data, std::uint64_t begin, bool counter,
-                        const std::vector<nb::bytes>& words, std::vector<std::uint32_t> counts,
-                        std::uint64_t most_rows) {
-  if (words.size() != counts.size() || begin > data.size())
-    throw nb::value_error("row shape of mismatched parts");
-  RowShape shape{counter, {}, std::move(counts)};
-  for (const auto& word : words) shape.words.emplace_back(text_of(word));
-  const std::size_t columns = shape.columns();
-  ParsedRows rows;
-  {
-    const nb::gil_scoped_release release;
-    rows = parse_rows(text_of(data), begin, shape, most_rows);
-  }
-  std::vector<std::uint8_t> statistics;
-  for (const auto& column : rows.statistics)
-    statistics.insert(statistics.end(),
-                      {column.least_decimals, column.most_decimals, column.most_significant,
-                       column.exponent_digits, column.trailing_zero, column.whole_without_point,
-                       column.bare_point, column.upper});
-  const std::size_t count = rows.offsets.size() - 1;
-  return {give(std::move(rows.values), std::array{count, columns}),
-          give(std::move(rows.counters)),
-          give(std::move(rows.offsets)),
-          give(std::move(statistics), std::array{columns, std::size_t{8}}),
-          static_cast<int>(rows.end),
-          rows.error_offset,
-          rows.error_item};
-}
-
 // Compares the selected rows with one template.
 using Matched = std::tuple<Given<std::uint8_t>, Given<std::uint64_t>, Given<std::uint32_t>,
                            std::vector<nb::bytes>>;
@@ -182,12 +150,6 @@ void bind_rows(nb::module_& module) {
   const auto counters = nb::arg("counters");
   const auto values = nb::arg("values");
   const auto formats = nb::arg("formats");
-  module.def(
-      "parse_rows", &bound_parse_rows, data, nb::arg("begin"), nb::arg("counter"), nb::arg("words"),
-      nb::arg("counts"), nb::arg("most_rows"),
-      "Read rows from ``begin`` on: each a counter if any, then words with their numbers.\n\n"
-      "Gives values, counters, offsets, statistics of the columns (see formats/rows.hpp), how\n"
-      "it ended, and at which offset and item.");
   module.def("match_rows", &bound_match_rows, data, nb::arg("offsets"), counters, values,
              nb::arg("selected"), nb::arg("template"), formats,
              "Compare rows with a template: its counter, literals, columns and widths.\n\n"

@@ -11,7 +11,7 @@ from records import CorruptError, Record
 
 HEAD, FILE, CHUNK, END = 1, 2, 3, 4
 MAY_BE_SKIPPED = 0x80
-KINDS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")
+KINDS = ("tx", "ty", "tz", "rx", "ry", "rz", "l", "sx", "sy", "sz")
 DICTIONARY = Path(__file__).resolve().parents[2] / "src/mocapress/container/dictionary1.bin"
 
 

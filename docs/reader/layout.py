@@ -9,6 +9,7 @@ from records import CorruptError, Record, unzigzag
 WORDS = {
     **{f"t{axis}": f"{axis.upper()}position" for axis in "xyz"},
     **{f"r{axis}": f"{axis.upper()}rotation" for axis in "xyz"},
+    **{f"s{axis}": f"{axis.upper()}scale" for axis in "xyz"},
 }
 LITERAL, BREAK, NAME, CHANNELS, COUNT, TIME, PASS, VALUE = range(8)
 NUMBER, TEXT = 0x10, 0x20

@@ -14,12 +14,138 @@ def c3d_layout(data: bytes) -> tuple[int, bool, int, int, int, int, tuple[int, i
     and of the rotations; and the parameters: see core/formats/c3d.hpp.
     """
 
-def parse_rows(data: bytes, begin: int, counter: bool, words: Sequence[bytes], counts: Sequence[int], most_rows: int) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None))], Annotated[NDArray[numpy.int64], dict(shape=(None,))], Annotated[NDArray[numpy.uint64], dict(shape=(None,))], Annotated[NDArray[numpy.uint8], dict(shape=(None, None))], int, int, int]:
-    """
-    Read rows from ``begin`` on: each a counter if any, then words with their numbers.
+class Problem:
+    """What is wrong with a file; None is what is not said."""
 
-    Gives values, counters, offsets, statistics of the columns (see formats/rows.hpp), how
-    it ended, and at which offset and item.
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def loses_motion(self) -> bool: ...
+
+    @property
+    def what(self) -> str: ...
+
+    @property
+    def line(self) -> int | None: ...
+
+    @property
+    def offset(self) -> int | None: ...
+
+    @property
+    def expected(self) -> str | None: ...
+
+    @property
+    def found(self) -> str | None: ...
+
+class Body:
+    """The rows of a file: see formats/body.hpp. Each array is given once."""
+
+    def values(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
+        """(F, C)"""
+
+    def counters(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None,))]:
+        """(F,) or (0,)"""
+
+    def offsets(self) -> Annotated[NDArray[numpy.uint64], dict(shape=(None,))]:
+        """(F + 1,)"""
+
+    def unread(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None,))]:
+        """Indices of rows."""
+
+    def statistics(self) -> Annotated[NDArray[numpy.uint8], dict(shape=(None, None))]:
+        """(C, 8)"""
+
+class MotionFile:
+    """A motion file that was read."""
+
+    @property
+    def fault(self) -> Problem | None: ...
+
+    @property
+    def problems(self) -> list[Problem]: ...
+
+    @property
+    def body(self) -> Body: ...
+
+    @property
+    def columns(self) -> list[tuple[str, int, str, str]]:
+        """Name, joint, kind and unit of each."""
+
+    @property
+    def words(self) -> list[bytes]:
+        """AMC: the bones as the file calls them."""
+
+    @property
+    def counts(self) -> list[int]:
+        """AMC: how many numbers each bone has."""
+
+    @property
+    def joints(self) -> list[tuple[str, int, tuple[float, float, float], tuple[str, ...], tuple[float, float, float], str, tuple[tuple[float, float], ...], tuple[tuple[float, float, float], ...]]]: ...
+
+    @property
+    def frame_time(self) -> str:
+        """Seconds, or with is_rate a rate; or empty."""
+
+    @property
+    def is_rate(self) -> bool: ...
+
+class SkeletonFile:
+    """A file of a skeleton that was read."""
+
+    @property
+    def fault(self) -> Problem | None: ...
+
+    @property
+    def joints(self) -> list[tuple[str, int, tuple[float, float, float], tuple[str, ...], tuple[float, float, float], str, tuple[tuple[float, float], ...], tuple[tuple[float, float, float], ...]]]: ...
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def mass(self) -> str: ...
+
+    @property
+    def radians(self) -> bool: ...
+
+    @property
+    def length_unit(self) -> float | None: ...
+
+def from_utf16(data: bytes) -> bytes | None:
+    """Give a text in UTF-16 as UTF-8, or None."""
+
+def read_bvh(data: bytes) -> MotionFile: ...
+
+def read_amc(data: bytes, skeleton: object | None) -> MotionFile:
+    """Read an AMC, with its Skeleton or None."""
+
+def read_asf(data: bytes) -> SkeletonFile: ...
+
+def read_rows(data: bytes, begin: int, columns: int) -> Body:
+    """
+    Read rows of so many numbers, a line each, until one differs or the data ends.
+    """
+
+def bvh_slots(row: bytes, columns: int) -> list[tuple[int, int, int]]:
+    """Find the numbers in a row: column, where it begins, where it ends."""
+
+def amc_slots(row: bytes, words: Sequence[bytes], counts: Sequence[int]) -> list[tuple[int, int, int]]:
+    """Find the numbers in a frame, its own number (column -1) first."""
+
+def skeleton_columns(skeleton: object) -> list[tuple[str, int, str, str]]:
+    """
+    Give name, joint, kind and unit of the columns of all joints' channels.
+    """
+
+def bone_columns(skeleton: object, bones: Sequence[tuple[str, int]], radians: bool) -> tuple[list[tuple[str, int, str, str]], Problem | None]:
+    """Give the columns of bones, or what the skeleton has otherwise."""
+
+def place(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], skeleton: object, columns: Sequence[tuple[int, str]], radians: bool, locally: bool) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None, None))]] | None:
+    """
+    Give the places of joints and then end sites, (F, P, 3), and the joints' turns,
+    (F, J, 4), in space, or ``locally``, of joints alone, relative to their parents.
+
+    Columns are told as joint and kind. None where bones stretch.
     """
 
 def match_rows(data: bytes, offsets: Annotated[NDArray[numpy.uint64], dict(shape=(None,), order='C', device='cpu', writable=False)], counters: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], selected: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], template: tuple[bool, Sequence[bytes], Sequence[int], Sequence[int]], formats: Annotated[NDArray[numpy.uint8], dict(shape=(None, 6), order='C', device='cpu', writable=False)]) -> tuple[Annotated[NDArray[numpy.uint8], dict(shape=(None,))], Annotated[NDArray[numpy.uint64], dict(shape=(None,))], Annotated[NDArray[numpy.uint32], dict(shape=(None,))], list[bytes]]:

@@ -8,6 +8,7 @@ import os
 import re
 import stat
 import sys
+import threading
 import warnings
 import weakref
 from collections.abc import Callable, Iterable, Sequence
@@ -86,7 +87,14 @@ class Source:
             self._open(self.path)
 
     def _open(self, path: Path) -> None:
-        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0))
+        try:
+            descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0))
+        except PermissionError:
+            if path.is_dir():  # Windows opens no folder
+                raise IsADirectoryError(
+                    errno.EISDIR, os.strerror(errno.EISDIR), str(path)
+                ) from None
+            raise
         # Whatever is renamed to the path meanwhile, all reads are of the file that was opened.
         weakref.finalize(self, os.close, descriptor)
         mode = os.fstat(descriptor).st_mode
@@ -116,7 +124,7 @@ class Source:
             return self._contents if whole else self._contents[start:stop]
         stop = self.size if stop is None else stop
         parts = []
-        while start < stop and (part := os.pread(self._descriptor, stop - start, start)):
+        while start < stop and (part := _pread(self._descriptor, stop - start, start)):
             parts.append(part)
             start += len(part)
         return b"".join(parts) if len(parts) != 1 else parts[0]
@@ -355,6 +363,18 @@ def read(source: Source, asf_path: str | Path | None = None, *, strict: bool = T
     source.accept(parts.problems, strict=strict)
     source.warn_of_guess()
     return of.describe(parts.stored, parts.clip) if of.describe else parts.clip
+
+
+_seeking = threading.Lock()
+
+
+def _pread(descriptor: int, length: int, start: int) -> bytes:
+    """Read at a place in a file; Windows has only reading where the file stands."""
+    if hasattr(os, "pread"):
+        return os.pread(descriptor, length, start)
+    with _seeking:
+        os.lseek(descriptor, start, os.SEEK_SET)
+        return os.read(descriptor, length)
 
 
 def _name(named: Named) -> str:

@@ -4,10 +4,12 @@ A file is written under a temporary name beside its own, synced, and then given 
 the process dies, the old file is there or the new one, whole. What a killed process has left is
 taken away by the next one that writes the same file: the temporary name follows from the file's,
 and a lock on it says whether its writer is still alive.
+
+Windows has no such locks. There every temporary name is another, and what a killed process has left
+under one stays.
 """
 
 import errno
-import fcntl
 import hashlib
 import os
 import secrets
@@ -18,8 +20,22 @@ from pathlib import Path
 
 from mocapress.errors import MocapressError
 
-_NEW = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
-_LEFT = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
+try:
+    import fcntl
+except ImportError:  # Windows
+    LOCKS = False
+else:
+    LOCKS = True
+
+
+def _flags(*names: str) -> int:
+    """Give the flags of ``os.open`` by these names, those that this system has."""
+    return sum(getattr(os, f"O_{name}", 0) for name in names)
+
+
+_WRITTEN = _flags("WRONLY", "CLOEXEC", "BINARY")
+_NEW = _flags("RDWR", "CREAT", "EXCL", "NOFOLLOW", "CLOEXEC", "BINARY")
+_LEFT = _flags("RDONLY", "NOFOLLOW", "NONBLOCK", "CLOEXEC")
 
 
 class ExistsError(MocapressError):
@@ -88,7 +104,7 @@ def write_all(
         _sync(folder)
     for path, data in streams:
         with _naming(path):
-            descriptor = os.open(path, os.O_WRONLY | os.O_CLOEXEC)
+            descriptor = os.open(path, _WRITTEN)
             try:
                 _write(descriptor, data)
             finally:
@@ -138,19 +154,26 @@ def _part(target: Path, data: bytes, like: os.stat_result | None, *, times: bool
             model = target.stat()
     # Nobody else sees the contents before the permissions are those of the model.
     descriptor, part = _create(target, 0o666 if model is None else 0o600)
+    stream = os.fdopen(descriptor, "wb", buffering=0)
     try:
         _write(descriptor, data)
-        if model is not None:
+        if model is not None and os.name == "posix":
             _permit(descriptor, model)
         if like is not None and times:
             with suppress(OSError):
-                os.utime(descriptor, ns=(like.st_atime_ns, like.st_mtime_ns))
+                os.utime(part, ns=(like.st_atime_ns, like.st_mtime_ns))
         os.fsync(descriptor)
+        if not LOCKS:  # Windows renames no file that is open
+            stream.close()
         yield part
     finally:
-        if _is_at(descriptor, part):
-            part.unlink()
-        os.close(descriptor)
+        if LOCKS:
+            if _is_at(descriptor, part):
+                part.unlink()
+            stream.close()
+        else:
+            stream.close()
+            part.unlink(missing_ok=True)
 
 
 def _commit(parts: Sequence[tuple[Path, Path, Path]], *, force: bool) -> None:
@@ -206,7 +229,7 @@ def _clean(targets: Sequence[Path]) -> None:
 
 def _stale(part: Path, locks: ExitStack) -> bool:
     """Say whether a killed process has left this part; then hold its lock."""
-    while True:
+    while LOCKS:
         try:
             descriptor = os.open(part, _LEFT)
         except FileNotFoundError:
@@ -215,6 +238,7 @@ def _stale(part: Path, locks: ExitStack) -> bool:
         fcntl.flock(descriptor, fcntl.LOCK_EX)
         if _is_at(descriptor, part):
             return True
+    return False
 
 
 def _same(path: Path, other: Path) -> bool:
@@ -224,7 +248,7 @@ def _same(path: Path, other: Path) -> bool:
 def _create(target: Path, mode: int) -> tuple[int, Path]:
     """Create a part and lock it."""
     part = _temporary(target)
-    for _ in range(100):
+    for _ in range(100 if LOCKS else 0):
         try:
             descriptor = os.open(part, _NEW, mode)
         except FileExistsError:
@@ -297,7 +321,7 @@ def _naming(path: Path) -> Iterator[None]:
 
 def _sync(folder: Path) -> None:
     with suppress(OSError):
-        descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
+        descriptor = os.open(folder, _flags("RDONLY", "CLOEXEC"))
         try:
             os.fsync(descriptor)
         finally:

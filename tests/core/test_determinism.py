@@ -29,6 +29,8 @@ class Way(NamedTuple):
     """Of the processor, as /proc/cpuinfo has them."""
     under: tuple[str, ...] = ()
     """The emulator that runs it."""
+    ending: str = ""
+    """Of the program's name."""
 
 
 V4 = frozenset({"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"})
@@ -42,6 +44,7 @@ WAYS = {
     "clang with AVX2 and FMA": Way("clang", "clang++", FUSED),
     "clang -O0": Way("clang_o0", "clang++"),
     "aarch64, emulated": Way("aarch64", "aarch64-linux-gnu-g++", under=("qemu-aarch64",)),
+    "Windows": Way("windows", "x86_64-w64-mingw32-g++-posix", under=("wine",), ending=".exe"),
     "WebAssembly, in Node": Way(
         "wasm", under=("node", "--no-warnings", str(Path(__file__).with_name("run_wasi.mjs")))
     ),
@@ -68,10 +71,11 @@ def printed(codec: str, way: Way) -> str:
         pytest.skip("for x86-64 only")
     if missing := way.features - features():
         pytest.skip(f"this processor has no {', '.join(sorted(missing))}")
-    program = f"build/check/{way.name}/{codec}"
+    program = f"build/check/{way.name}/{codec}{way.ending}"
     subprocess.run(["make", "-s", program], cwd=ROOT, check=True, capture_output=True)
     whole = [*way.under, str(ROOT / program)]
-    return subprocess.run(whole, capture_output=True, text=True, check=True).stdout
+    quiet = os.environ | {"WINEDEBUG": "-all"}
+    return subprocess.run(whole, capture_output=True, text=True, check=True, env=quiet).stdout
 
 
 def need_zig() -> None:

@@ -16,7 +16,9 @@ AXES = {"x": 0, "y": 1, "z": 2}
 def turn(axis: str, angle: Any) -> Array:
     """Give rotation matrices about x, y or z: (F, 3, 3)."""
     angle = np.asarray(angle, float)
-    c, s, o, z = np.cos(angle), np.sin(angle), np.ones_like(angle), np.zeros_like(angle)
+    with np.errstate(invalid="ignore"):  # of infinite angles
+        c, s = np.cos(angle), np.sin(angle)
+    o, z = np.ones_like(angle), np.zeros_like(angle)
     matrix = {
         "x": [[o, z, z], [z, c, -s], [z, s, c]],
         "y": [[c, z, s], [z, o, z], [-s, z, c]],
@@ -43,7 +45,7 @@ def number(word: str) -> float:
 def bvh(data: bytes) -> tuple[list[dict[str, Any]], Array]:
     """Give the joints, end sites among them, and the values, (F, C)."""
     text = text_of(data).replace("\0", " ")
-    motion = re.search(r"^\s*MOTION\b", text, re.MULTILINE | re.IGNORECASE)
+    motion = re.search(r"[\r\n]\s*MOTION\b", text, re.IGNORECASE)
     assert motion is not None
     head, rest = text[: motion.start()], text[motion.end() :]
     lines = [line.strip() for line in re.split(r"[\r\n]+", re.sub(r"([{}])", r"\n\1\n", head))]

@@ -15,7 +15,7 @@ from mocapress.errors import FormatError, UnsupportedError
 from mocapress.formats.contract import Format, Split, split_of
 from mocapress.formats.layout import build, print_clip
 from mocapress.formats.problems import UNREADABLE_ROWS, Problem
-from mocapress.formats.rows import RowShape, read_rows
+from mocapress.formats.rows import read_rows
 from mocapress.motion import Clip, Joint, Skeleton
 from mocapress.motion.columns import skeleton_columns
 
@@ -27,7 +27,7 @@ def split(data: bytes, _skeleton: Skeleton | None, file: str | None) -> Split:
     header = _HEADER.match(data)
     if header is None:
         raise FormatError("no table", file=file, line=1, expected="TABLE and a rate")
-    body = read_rows(data, header.end(), RowShape(False, (b"",), (1,)))
+    body = read_rows(data, header.end(), 1)
     problems = []
     if data[int(body.offsets[-1]) :].strip():
         problems.append(Problem.of(UNREADABLE_ROWS, "not a number"))

@@ -13,11 +13,6 @@ from mocapress.motion import Clip
 
 CASES = Path(__file__).parents[1] / "cases"
 LATER = {
-    **{f"18-nan-values/{file}.bvh": "nan and inf are no numbers yet" for file in "abcde"},
-    "25-token-based-layouts/e.bvh": "several frames on a line",
-    "27-duplicate-names-and-channels/b.bvh": "a repeated axis",
-    "17-scale-channels/a.bvh": "scale channels are not read",
-    "25-token-based-layouts/f.bvh": "CR alone as line end",
     "25-token-based-layouts/g.bvh": "UTF-16",
 }
 REFUSED = {
@@ -39,6 +34,8 @@ FRAMES = {
 }
 WARNED = {
     "08-one-frame-more-rokoko/a.bvh": ["extra-rows"],
+    "17-scale-channels/a.bvh": ["scale-channels"],
+    **{f"18-nan-values/{file}.bvh": ["not-numbers"] for file in "abcde"},
     "23-one-frame-no-frame/c.bvh": ["extra-rows"],
     "25-token-based-layouts/k.bvh": ["bytes-after-end"],
     "25-token-based-layouts/l.bvh": ["bytes-after-end"],
@@ -57,7 +54,7 @@ READABLE = [
 ]
 
 
-def read(name: str) -> tuple[Clip, list[str]]:
+def read(name: str | Path) -> tuple[Clip, list[str]]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         clip = mp.read(CASES / name)
@@ -102,7 +99,7 @@ def test_converting_keeps_names_and_positions(name: str, tmp_path: Path) -> None
     places = mp.positions(clip)
     for suffix in (".amc", ".bvh") if name.endswith("bvh") else (".bvh", ".amc"):
         mp.write(clip, tmp_path / f"a{suffix}", fps=None if clip.frame_time else 120)
-        made = mp.read(tmp_path / f"a{suffix}")
+        made, _ = read(tmp_path / f"a{suffix}")
         assert made.skeleton is not None
         called = iter(enumerate(joint.name for joint in made.skeleton.joints))
         index = [next(i for i, n in called if n == joint.name) for joint in clip.skeleton.joints]

@@ -9,7 +9,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from mocapress.formats.number_formats import detect, printed
-from mocapress.formats.rows import RowShape, read_rows
+from mocapress.formats.rows import read_rows
 from mocapress.motion.number_format import NumberFormat, NumberKind
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
@@ -17,7 +17,7 @@ motion = st.floats(-1e6, 1e6) | st.floats(-1e-3, 1e-3)
 
 
 def read_one(text: str) -> float | None:
-    body = read_rows(text.encode() + b"\n", 0, RowShape(False, (b"",), (1,)))
+    body = read_rows(text.encode() + b"\n", 0, 1)
     return float(body.values[0, 0]) if len(body.values) == 1 else None
 
 
@@ -41,7 +41,8 @@ def test_reading_gives_the_nearest_double(value: float, style: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["", "nan", "inf", "-", ".", "1e", "1e+", "0x1p3", "1,5", "--1", "1.2.3", "1e999"]
+    "text",
+    ["", "nanx", "in", "1.#", "-", ".", "1e", "1e+", "0x1p3", "1,5", "--1", "1.2.3", "1e999"],
 )
 def test_what_is_no_number_is_not_read(text: str) -> None:
     assert read_one(text) is None
@@ -126,7 +127,7 @@ def test_formats_are_found_from_what_is_written(style: str) -> None:
     values = np.random.default_rng(7).normal(0, 30, (40, 3))
     texts: list[list[bytes | None]] = [[write(float(v)).encode() for v in row] for row in values]
     data = b"".join(b" ".join(t for t in row if t) + b"\n" for row in texts)
-    body = read_rows(data, 0, RowShape(False, (b"",), (3,)))
+    body = read_rows(data, 0, 3)
     found = detect(body.statistics, body.values, texts)
     assert {f.kind for f in found} == {kind}
     for c in range(3):

@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from mocapress.source import Source
 
 STREAM = Path("-")
+# Windows has no SIGHUP.
+_ENDING = [
+    signal.Signals[name] for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+]
 
 
 @dataclass(slots=True, eq=False)
@@ -233,7 +237,7 @@ def _signals(put: Callable[[int], None]) -> Iterator[None]:
     """Have signals that end the process told as a number first; those ignored stay so."""
     before = {}
     if threading.current_thread() is threading.main_thread():
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        for number in _ENDING:
             if signal.getsignal(number) not in (signal.SIG_IGN, None):
                 before[number] = signal.signal(number, lambda number, _: put(number))
     try:

@@ -141,7 +141,8 @@ def _skeleton_columns(skeleton: Skeleton) -> Columns:
     moved = [(index, joint) for index, joint in enumerate(skeleton.joints) if joint.channels]
     bones = tuple(Bone(joint.name, len(joint.channels), index) for index, joint in moved)
     kinds = [kind for _, joint in moved for kind in joint.channels]
-    units = [skeleton.angle_unit if kind[0] == "r" else "length" for kind in kinds]
+    of_kind = {"r": skeleton.angle_unit, "t": "length", "l": "length"}
+    units = [of_kind.get(kind[0], "") for kind in kinds]
     return Columns(_columns_of(bones, kinds, units), bones)
 
 

@@ -4,7 +4,7 @@ from mocapress.container import limits
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 from mocapress.records import Reader, Writer
 
-_KINDS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")
+_KINDS = ("tx", "ty", "tz", "rx", "ry", "rz", "l", "sx", "sy", "sz")
 _FIXED, _RADIANS, _LENGTH_UNIT, _AXES, _LIMITS = 1, 2, 4, 8, 16
 _NO_AXIS = ((0.0, 0.0, 0.0), "xyz")
 

@@ -1,23 +1,11 @@
-"""Names of joints in text files: escaped where a format cannot hold them, and back.
+"""Names of joints in text files: escaped where a format cannot hold them.
 
 A character is escaped as the bytes of its UTF-8, ``%20`` for a blank; ``%.`` with digits behind it
 stands for nothing and makes an empty or a repeated name a word of its own. Letters of any script,
-digits and usual signs stay as they are.
+digits and usual signs stay as they are. The core reads them back.
 """
 
-import re
 from collections.abc import Sequence
-
-_ESCAPE = re.compile(rb"%(?:([0-9A-F]{2})|\.\d*)")
-
-
-def decoded(raw: bytes) -> str:
-    """Give a name from its bytes in a file: UTF-8 where it is that, else Latin-1."""
-    name = _ESCAPE.sub(lambda match: bytes.fromhex((match[1] or b"").decode()), raw)
-    try:
-        return name.decode("utf-8", "surrogatepass")
-    except UnicodeDecodeError:
-        return name.decode("latin-1")
 
 
 def escaped(name: str, forbidden: str = "") -> str:

@@ -141,7 +141,6 @@ def build(
     data: bytes,
     body: Body,
     slots_of_row: Callable[[bytes], list[Slot]],
-    texts_of_row: Callable[[bytes], Sequence[bytes | None]] | None = None,
 ) -> Layout:
     """Find the layout of a file whose rows are read.
 
@@ -151,8 +150,6 @@ def build(
         Id of the format, the file and its rows.
     slots_of_row
         Gives where the numbers of a row's bytes stand, in order.
-    texts_of_row
-        Gives the texts of a row's columns, where that takes less time than ``slots_of_row``.
 
     """
     offsets = body.offsets.astype(np.int64)
@@ -170,14 +167,9 @@ def build(
     sample = pending[np.unique(places)]
 
     def texts_of(index: int) -> Sequence[bytes | None]:
-        columns = body.values.shape[1]
-        if texts_of_row:
-            found = texts_of_row(data[offsets[index] : offsets[index + 1]])
-            if len(found) == columns:
-                return found
         text, numbers = row(index)
         places = {column: text[start:end] for column, start, end in numbers}
-        return [places.get(column) for column in range(columns)]
+        return [places.get(column) for column in range(body.values.shape[1])]
 
     texts = [texts_of(index) for index in sample.tolist()]
     formats = detect(body.statistics, body.values[sample], texts)

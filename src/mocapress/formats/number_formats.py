@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,15 +117,6 @@ def printed(
         2**62,
     )
     return text.split(b"\n")[:-1]
-
-
-def stated(text: bytes) -> Decimal | None:
-    """Read a time or a rate that a header states; None where it is none, or an absurd one."""
-    try:
-        number = Decimal(text.decode("latin-1"))
-    except InvalidOperation:
-        return None
-    return number if _is_usual(number) else None
 
 
 def to_state(number: Decimal) -> str:

@@ -24,6 +24,9 @@ _WORDS = {
     "rx": "Xrotation",
     "ry": "Yrotation",
     "rz": "Zrotation",
+    "sx": "Xscale",
+    "sy": "Yscale",
+    "sz": "Zscale",
 }
 
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from mocapress import _core
 from mocapress.errors import FormatError
 
 MISSING_ROWS = "missing-rows"
@@ -12,6 +13,10 @@ EXTRA_ROWS = "extra-rows"
 """More rows than declared; all of them are read."""
 BYTES_AFTER_END = "bytes-after-end"
 """Something that is no row after the last row."""
+NOT_NUMBERS = "not-numbers"
+"""Values such as ``nan`` and ``inf``."""
+SCALE_CHANNELS = "scale-channels"
+"""Channels that scale; kinematics leaves them out."""
 
 _LOSING = frozenset({MISSING_ROWS, UNREADABLE_ROWS})
 
@@ -47,6 +52,19 @@ class Problem:
     ) -> "Problem":
         """Make a problem of a known name, which says whether it loses motion."""
         return cls(name, name in _LOSING, what, line, offset, expected, found)
+
+    @classmethod
+    def told(cls, fact: _core.Problem) -> "Problem":
+        """Make one of what the core found."""
+        return cls(
+            fact.name,
+            fact.loses_motion,
+            fact.what,
+            fact.line,
+            fact.offset,
+            fact.expected,
+            fact.found,
+        )
 
     def error(self, file: str | None = None) -> FormatError:
         """Give the error that says the same."""

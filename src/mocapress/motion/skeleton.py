@@ -21,7 +21,8 @@ class Joint:
     offset: Vec3 = (0.0, 0.0, 0.0)
     """From the parent's joint, in the parent's frame, length units of the file."""
     channels: tuple[str, ...] = ()
-    """``tx ty tz rx ry rz`` (``l`` for ASF's stretch), in the order of the file."""
+    """``tx ty tz rx ry rz sx sy sz`` (``l`` for ASF's stretch), in the order of the file; rotations
+    may repeat, as in Euler angles X, Y, X."""
     axis: Vec3 = (0.0, 0.0, 0.0)
     """ASF: Euler angles (unit of the skeleton) of the local frame in which channels turn."""
     axis_order: str = "xyz"

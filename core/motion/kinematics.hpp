@@ -1,0 +1,74 @@
+// Forward kinematics: from channels to places and turns in space. The conventions are those of
+// docs/decisions/002-kinematics.md; positions have the same bits from every build.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "motion/skeleton.hpp"
+
+namespace mocapress {
+
+// Scalar first.
+using Quaternion = std::array<double, 4>;
+
+// Where a column of a clip stands: which joint it moves, and how.
+struct ChannelPlace {
+  std::int32_t joint = -1;
+  Kind kind = Kind::tx;
+};
+
+// A skeleton whose channels are columns. A channel that no column has is 0, or the offset where it
+// moves a BVH's joint.
+class Rig {
+ public:
+  // `columns[c]` says what column c is; one of no joint, or of a channel that its joint lacks,
+  // moves nothing. Angles of columns are in `radians` or degrees.
+  Rig(const Skeleton& skeleton, const std::vector<ChannelPlace>& columns, bool radians);
+
+  std::size_t joints() const { return moves_.size(); }
+  // Joints, then the ends of bones in the order of their joints.
+  std::size_t points() const { return moves_.size() + ends_.size(); }
+  // Of each point, -1 for a root.
+  std::int32_t parent(std::size_t point) const {
+    return point < joints() ? moves_[point].parent : ends_[point - joints()].joint;
+  }
+  // Whether a frame stretches bones (ASF `l`), which has no kinematics here.
+  bool stretches(const double* row) const;
+
+  // Relative to the parents: (J, 3) offset and channels together, and (J, 4).
+  void place_locally(const double* row, double* places, double* turns) const;
+  // In space: (points, 3) and the joints' (J, 4).
+  void place(const double* row, double* places, double* turns) const;
+
+ private:
+  struct Rotation {
+    std::size_t column;
+    std::size_t axis;
+  };
+  struct Move {
+    std::int32_t parent = -1;
+    Vector offset{};
+    std::array<std::int64_t, 3> along = {-1, -1, -1};  // columns
+    std::vector<Rotation> turns;
+    bool framed = false;  // turns in a frame of its own
+    Quaternion frame{};
+  };
+  struct End {
+    std::int32_t joint;
+    Vector at;
+  };
+
+  Vector local_place(const Move& move, const double* row) const;
+  Quaternion local_turn(const Move& move, const double* row) const;
+
+  bool fixed_;
+  bool radians_;
+  std::vector<Move> moves_;
+  std::vector<End> ends_;
+  std::vector<std::size_t> stretching_;
+};
+
+}  // namespace mocapress
