@@ -1,6 +1,6 @@
 #include "coding/fail.hpp"
 #include "exact/header.hpp"
-#include "wasm/module.hpp"
+#include "wasm/decoder.hpp"
 
 namespace mocapress::wasm {
 

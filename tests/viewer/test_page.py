@@ -124,7 +124,7 @@ ROOMS = {
     "state": {"reading"},
     "panels": {"state"},
     "scene": {"state"},
-    "work": {"reading", "state"},
+    "work": {"reading"},
 }
 
 
