@@ -181,6 +181,9 @@ _TOOLS: dict[str, Callable[[], Tool]] = {
 _RIVALS: dict[str, Callable[[], Rival]] = {
     "pcodec float64": partial(rivals.pcodec, grid=False),
     "pcodec grid": partial(rivals.pcodec, grid=True),
+    "OpenZL float64": partial(rivals.openzl, grid=False),
+    "OpenZL grid": partial(rivals.openzl, grid=True),
+    "Parquet": rivals.parquet,
     "fpzip": rivals.fpzip,
     "zfp": rivals.zfp,
 }

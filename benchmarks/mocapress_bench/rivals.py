@@ -1,6 +1,7 @@
 """Compressors of numbers, which see only the matrix and not the text around it.
 
-pcodec works on columns, fpzip and zfp (in its reversible mode) on the matrix of float64.
+pcodec, OpenZL and Parquet work on columns, fpzip and zfp (in its reversible mode) on the matrix of
+float64.
 """
 
 import struct
@@ -70,20 +71,98 @@ def pcodec(*, grid: bool) -> Rival:
     delta = module.DeltaSpec
     deltas = [delta.auto(), *map(delta.try_consecutive, (1, 2, 3))] if grid else [delta.auto()]
 
-    def pack(found: _Grid) -> bytes:
+    def pack(numbers: NDArray[Any]) -> bytes:
         packed: list[bytes] = [
             standalone.simple_compress(
-                found.numbers, module.ChunkConfig(compression_level=12, delta_spec=spec)
+                numbers, module.ChunkConfig(compression_level=12, delta_spec=spec)
             )
             for spec in deltas
         ]
-        return _HEADER.pack(found.kind, found.digits, found.least) + min(packed, key=len)
+        return min(packed, key=len)
+
+    return _by_column(pack, standalone.simple_decompress, grid=grid)
+
+
+def openzl(*, grid: bool) -> Rival:
+    """Give OpenZL's graph for numbers at its strongest level, column by column.
+
+    Parameters
+    ----------
+    grid
+        Whether to try the indices on decimal grids, too, as for ``pcodec``; and of all numbers
+        the differences of orders 1 to 3 (of floats, those of their bits).
+
+    """
+    module: Any = import_module("openzl.ext")
+    compressor = module.Compressor()
+    compressor.set_parameter(module.CParam.FormatVersion, module.MAX_FORMAT_VERSION)
+    compressor.set_parameter(module.CParam.CompressionLevel, 9)
+    compressor.select_starting_graph(module.graphs.Compress()(compressor))
+    context = module.CCtx()
+
+    def packed(bits: NDArray[Any], order: int, kind: str) -> bytes:
+        for _ in range(order):
+            bits = np.diff(bits, prepend=bits.dtype.type(0))
+        context.ref_compressor(compressor)  # it is let go after each call
+        data: bytes = context.compress([module.Input(module.Type.Numeric, bits)])
+        return bytes([order, ord(kind)]) + data
+
+    def pack(numbers: NDArray[Any]) -> bytes:
+        orders = range(4 if grid else 1)
+        bits = numbers.view(np.int64) if numbers.dtype == np.float64 else numbers
+        return min((packed(bits, order, numbers.dtype.char) for order in orders), key=len)
+
+    def unpack(data: bytes) -> NDArray[Any]:
+        (output,) = module.DCtx().decompress(data[2:])
+        bits = output.content.as_nparray().view(f"i{output.elt_width}")
+        for _ in range(data[0]):
+            bits = np.cumsum(bits, dtype=bits.dtype)
+        return np.asarray(bits.view(chr(data[1])))
+
+    return _by_column(pack, unpack, grid=grid)
+
+
+def parquet() -> Rival:
+    """Give Parquet as tables of floats are best stored in it: bytes split, zstd -22."""
+    arrow: Any = import_module("pyarrow")
+    module: Any = import_module("pyarrow.parquet")
+
+    def compress(values: Values) -> bytes:
+        names = [str(c) for c in range(values.shape[1])]
+        table = arrow.table([arrow.array(column) for column in values.T.copy()], names=names)
+        stream = arrow.BufferOutputStream()
+        module.write_table(
+            table,
+            stream,
+            compression="zstd",
+            compression_level=22,
+            use_dictionary=False,
+            column_encoding=dict.fromkeys(names, "BYTE_STREAM_SPLIT"),
+        )
+        packed: bytes = stream.getvalue().to_pybytes()
+        return packed
+
+    def decompress(data: bytes, shape: tuple[int, int]) -> Values:
+        table = module.read_table(arrow.BufferReader(data))
+        return np.stack([column.to_numpy() for column in table.columns], axis=1).reshape(shape)
+
+    return Rival(compress, decompress)
+
+
+def _by_column(
+    pack: Callable[[NDArray[Any]], bytes],
+    unpack: Callable[[bytes], NDArray[Any]],
+    *,
+    grid: bool,
+) -> Rival:
+    """Give a compressor of one column's numbers for a matrix; with ``grid``, also of indices."""
 
     def compress(values: Values) -> bytes:
         parts = []
         for column in np.ascontiguousarray(values.T):
             grids = [_Grid(_FLOATS, 0, 0, column), *(_grids(column) if grid else ())]
-            part = min(map(pack, grids), key=len)
+            packed = (_HEADER.pack(g.kind, g.digits, g.least) + pack(g.numbers) for g in grids)
+            part = min(packed, key=len)
             parts.append(struct.pack("<I", len(part)) + part)
         return b"".join(parts)
 
@@ -92,7 +171,7 @@ def pcodec(*, grid: bool) -> Rival:
         for c in range(shape[1]):
             (size,) = struct.unpack_from("<I", data, place)
             part = data[place + 4 : place + 4 + size]
-            numbers = standalone.simple_decompress(part[_HEADER.size :])
+            numbers = unpack(part[_HEADER.size :])
             restored[:, c] = _from_grid(numbers, *_HEADER.unpack_from(part))
             place += 4 + size
         return restored

@@ -3,6 +3,7 @@
 import exact_fast
 from exact_header import Header, read_model
 from exact_model import Part
+from exact_tables import Told
 from records import Record
 from streams import Coded
 
@@ -19,11 +20,13 @@ def decode(
     """Give the rows of chunks; there are as many columns as ``formats``."""
     record = Record(header)
     told = Header(record, len(formats))
+    beside = Told(record, len(formats))
     record.end()
     level = int(parameters.get("level", "6"))
     lists = read_model(model) if told.learned else {}
     rows: list[list[float]] = []
-    for frames, payload in chunks:
+    for frames, packed in chunks:
+        payload, masks = beside.unpack(packed, frames)
         coded: list[list[float]] = [[] for _ in range(frames)]
         if told.columns and level < 3:
             coded = exact_fast.decode(payload, frames, told.columns, level)
@@ -35,5 +38,6 @@ def decode(
                 for frame in range(frames):
                     coded[frame] += part.frame(first=frame == 0)
             stream.end()
-        rows += map(told.row, coded)
+        for frame, numbers in enumerate(coded):
+            rows.append(beside.restored(told.row(numbers), [mask[frame] for mask in masks]))
     return rows

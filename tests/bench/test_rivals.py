@@ -17,6 +17,9 @@ from mocapress_bench.rivals import Rival
 MAKERS: dict[str, Callable[[], Rival]] = {
     "pcodec float64": partial(rivals.pcodec, grid=False),
     "pcodec grid": partial(rivals.pcodec, grid=True),
+    "OpenZL float64": partial(rivals.openzl, grid=False),
+    "OpenZL grid": partial(rivals.openzl, grid=True),
+    "Parquet": rivals.parquet,
     "fpzip": rivals.fpzip,
     "zfp": rivals.zfp,
 }

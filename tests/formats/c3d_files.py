@@ -137,7 +137,12 @@ def walk(frames: int = 40, *, floats: bool = True) -> tuple[Values, Values, Valu
     samples = np.arange(4 * frames)[:, None]
     analog = np.rint(400 * np.sin(0.02 * samples + np.arange(3)))
     if floats:
-        return points.astype(np.float32).astype(np.float64), words, analog * 0.25
+        # On a grid; on a grid but for roundings; few numbers.
+        analog[:, 0] *= 0.25
+        analog[:, 1] = (analog[:, 1] * 0.3).astype(np.float32) * np.float32(0.0173)
+        analog[:, 2] = np.sqrt(analog[:, 2] % 7 + 20)
+        analog = analog.astype(np.float32).astype(np.float64)
+        return points.astype(np.float32).astype(np.float64), words, analog
     return np.rint(10 * points), words, analog
 
 
@@ -150,6 +155,7 @@ def odd_floats(processor: int) -> bytes:
     """Give a C3D with gaps, rotations, NaN, and words that no number has."""
     points, words, analog = walk(150)
     points[3, 0, 2], points[4, 0, 1], words[6, 0], words[7, 0] = np.nan, -0.0, -0.0, 1.5
+    analog[9, 2] = np.inf
     turned = np.sin(0.03 * np.arange(150)[:, None, None] + np.arange(34).reshape(1, 2, 17))
     return c3d(
         points, words, analog, processor=processor, samples=4, rotations=turned, tail=b"between"

@@ -125,9 +125,9 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_wide.amc": (clips.wide(), "exact:chunk=2", {}),
     "v1_intel.c3d": (c3d_files.odd_floats(c3d_files.INTEL), "exact:level=2,chunk=60", {}),
     "v1_dec.c3d": (c3d_files.odd_floats(c3d_files.DEC), "exact:level=2,chunk=60", {}),
-    "v1_mips.c3d": (c3d_files.odd_floats(c3d_files.MIPS), "exact:level=2,chunk=60", {}),
+    "v1_mips.c3d": (c3d_files.odd_floats(c3d_files.MIPS), "exact:level=3,chunk=60", {}),
     "v1_integers.c3d": (c3d_files.whole_numbers(c3d_files.INTEL), "exact:level=2,chunk=60", {}),
-    "v1_mips_integers.c3d": (c3d_files.whole_numbers(c3d_files.MIPS), "exact:level=2,chunk=60", {}),
+    "v1_mips_integers.c3d": (c3d_files.whole_numbers(c3d_files.MIPS), "exact:level=3,chunk=60", {}),
 }
 # NAME.mcz was coded with the model NAME.mcm, which was learned from the file itself.
 TRAINED = {

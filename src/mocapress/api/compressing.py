@@ -25,6 +25,8 @@ from mocapress.source import Named, Source
 
 # Below this size, or above this share of the original, the general-purpose way is tried as well.
 _SMALL = 2**15
+# Files of stored numbers, unlike text, may repeat themselves.
+_SMALL_OF_NUMBERS = 2**23
 _POOR = 0.4
 _LONGEST_CHUNK = 2**20
 
@@ -108,7 +110,7 @@ def compress_source(
     """Compress a file; see ``compress``."""
     made = _codec(codec, model)
     data = source.data
-    blob, warning, loss = None, None, None
+    blob, warning, loss, small = None, None, None, _SMALL
     if source.format is None:
         warning = "not a motion file; stored by a general-purpose compressor"
     elif source.format.split:
@@ -122,8 +124,9 @@ def compress_source(
             embed = embed_asf and source.used is not None
             if embed:
                 source.warn_of_guess()
+            small = _SMALL if parts.stored is None else _SMALL_OF_NUMBERS
             blob, warning, loss = _compress_motion(source, parts, made, embed, model, notes or {})
-    if blob is None or len(data) < _SMALL or len(blob) > _POOR * len(data):
+    if blob is None or len(data) < small or len(blob) > _POOR * len(data):
         plain = _compress_plain(source, notes or {})
         if blob is None or len(plain) < len(blob):
             blob, loss = plain, None

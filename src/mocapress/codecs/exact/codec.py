@@ -1,7 +1,7 @@
 """The codec ``exact``."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -17,6 +17,7 @@ from mocapress.codecs.contract import (
     Model,
     Others,
 )
+from mocapress.codecs.exact.columns import Told
 from mocapress.codecs.exact.coupling_search import find_couplings
 from mocapress.codecs.exact.header import pack_header, unpack_header
 from mocapress.codecs.exact.roles import Role, Roles, find_roles
@@ -59,8 +60,9 @@ class Exact(Codec):
         for stream in streams:
             if stream.frames == 0:
                 continue
-            coder = _Coder(_roles(stream.values, stream.columns, self.level), self.level, start)
-            _, learned = coder.encode(stream.values, learn=True)
+            _, numbers, _ = Told.find(stream.values)
+            coder = _Coder(_roles(numbers, stream.columns, self.level), self.level, start)
+            _, learned = coder.encode(numbers, learn=True)
             start.take(coder.columns, learned)
         return model_of(self.id, start)
 
@@ -82,13 +84,15 @@ class Exact(Codec):
         """
         if stream.frames == 0:
             return Encoded(b"", ())
-        roles = _roles(stream.values, stream.columns, self.level)
+        told, numbers, masks = Told.find(stream.values)
+        roles = _roles(numbers, stream.columns, self.level)
         coder = _Coder(roles, self.level, start_of(model))
         chunks = []
         for first in range(0, stream.frames, self.chunk):
-            rows = stream.values[first : first + self.chunk]
-            chunks.append(Chunk(first, len(rows), coder.encode(rows)[0]))
-        return Encoded(pack_header(roles, has_model=model is not None), tuple(chunks))
+            rows = numbers[first : first + self.chunk]
+            own = [mask[first : first + self.chunk] for mask in masks]
+            chunks.append(Chunk(first, len(rows), told.pack(coder.encode(rows)[0], own)))
+        return Encoded(pack_header(roles, told, has_model=model is not None), tuple(chunks))
 
     def decode(
         self,
@@ -112,7 +116,7 @@ class Exact(Codec):
         """
         if not chunks:
             return np.empty((0, len(columns)))
-        roles, has_model = unpack_header(header, len(columns))
+        roles, told, has_model = unpack_header(header, len(columns))
         if has_model and model is None:
             raise CorruptError("exact header: the clip was coded with a model")
         coder = _Coder(roles, self.level, start_of(model))
@@ -121,14 +125,18 @@ class Exact(Codec):
         frames = sum(chunk.frames for chunk in chunks)
         values = np.empty((frames if stop is None else min(stop, frames), len(columns)))
         values[:, roles.of(Role.CONSTANT)] = roles.constants
+        copies = roles.of(Role.COPY)
+        originals = [roles.originals[column] for column in copies]
         row = 0
         for chunk in chunks:
             rows = values[row : row + chunk.frames]
             if len(rows):
-                rows[:, coder.columns] = coder.decode(chunk, len(rows))
+                where = f"exact chunk from frame {chunk.first}"
+                payload, masks = told.unpack(chunk.payload, chunk.frames, where)
+                rows[:, coder.columns] = coder.decode(replace(chunk, payload=payload), len(rows))
+                rows[:, copies] = rows[:, originals]
+                told.restore(rows, masks)
             row += chunk.frames
-        copies = roles.of(Role.COPY)
-        values[:, copies] = values[:, [roles.originals[column] for column in copies]]
         return values
 
     def _check_size(self, chunk: Chunk, coded: int) -> None:

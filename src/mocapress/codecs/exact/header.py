@@ -3,6 +3,7 @@
 import struct
 from collections.abc import Sequence
 
+from mocapress.codecs.exact.columns import Told
 from mocapress.codecs.exact.coupling import (
     Coupling,
     arrange,
@@ -25,13 +26,13 @@ _LINES, _LINE_DIGITS = 7, 32
 _TURNS = 3
 
 
-def pack_header(roles: Roles, *, has_model: bool) -> bytes:
+def pack_header(roles: Roles, told: Told, *, has_model: bool) -> bytes:
     """Make the header of a clip with these roles, coded with a model or without."""
     own = roles.skeleton != NONE and set(roles.couplings) <= set(OWN_COUPLINGS)
     writer = Writer()
     writer.integer(_MODEL * has_model + _OWN_COUPLINGS * own + _SKELETON * roles.skeleton)
-    told = zip(roles.roles, roles.turns, strict=True)
-    write_palette(writer, [role + len(Role) * turns for role, turns in told])
+    codes = zip(roles.roles, roles.turns, strict=True)
+    write_palette(writer, [role + len(Role) * turns for role, turns in codes])
     lines = [roles.lines[c] for c in _moving(roles.roles)]
     write_palette(writer, [line * _LINE_DIGITS + digits for line, digits in lines])
     exponents = [roles.exponents[c] // EXPONENT_STEP for c in roles.of(Role.PREDICTED)]
@@ -43,11 +44,12 @@ def pack_header(roles: Roles, *, has_model: bool) -> bytes:
         writer.integer(sum(bit << i for i, bit in enumerate(used)))
     else:
         write_couplings(writer, roles.couplings)
+    told.write(writer)
     return bytes(writer.data)
 
 
-def unpack_header(header: bytes, columns: int) -> tuple[Roles, bool]:
-    """Give the roles of as many columns, and whether they were coded with a model.
+def unpack_header(header: bytes, columns: int) -> tuple[Roles, Told, bool]:
+    """Give the roles of as many columns, their gaps and tables, and whether a model was used.
 
     Raises
     ------
@@ -60,8 +62,8 @@ def unpack_header(header: bytes, columns: int) -> tuple[Roles, bool]:
     skeleton, own = flags // _SKELETON, bool(flags & _OWN_COUPLINGS)
     if CHANNELS.get(skeleton, columns) != columns or (own and skeleton == NONE):
         raise reader.fail("the channels of a skeleton that has others")
-    told = read_palette(reader, columns, _TURNS * len(Role) - 1)
-    roles = tuple(Role(code % len(Role)) for code in told)
+    codes = read_palette(reader, columns, _TURNS * len(Role) - 1)
+    roles = tuple(Role(code % len(Role)) for code in codes)
     moving = _moving(roles)
     lines = [(0, 0)] * columns
     for column, line in zip(
@@ -76,18 +78,19 @@ def unpack_header(header: bytes, columns: int) -> tuple[Roles, bool]:
     originals = _read_originals(reader, roles)
     constants = _read_constants(reader, roles.count(Role.CONSTANT))
     couplings = _read_couplings(reader, predicted, own=own)
+    told = Told.read(reader, columns)
     reader.end()
     made = Roles(
         roles,
         tuple(originals),
         tuple(lines),
         tuple(exponents),
-        tuple(code // len(Role) for code in told),
+        tuple(code // len(Role) for code in codes),
         tuple(couplings),
         skeleton,
         constants,
     )
-    return made, bool(flags & _MODEL)
+    return made, told, bool(flags & _MODEL)
 
 
 def _moving(roles: Sequence[Role]) -> list[int]:

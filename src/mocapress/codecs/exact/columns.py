@@ -1,0 +1,126 @@
+"""What of a stream's columns is told beside the numbers that are coded: their gaps and tables."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress.codecs.exact.gaps import Mask, Masks, read_runs, write_runs
+from mocapress.codecs.exact.tables import (
+    Table,
+    Tables,
+    coded,
+    decoded,
+    read_tables,
+    write_tables,
+)
+from mocapress.codecs.palette import read_palette, write_palette
+from mocapress.records import Reader, Writer
+
+Values = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Told:
+    """The masks and tables of columns."""
+
+    values: Sequence[float] = ()
+    """What stands in the rows that a mask names, per mask."""
+    masks_of: Sequence[tuple[int, int]] = ()
+    """Per column the numbers of up to two masks, from 1 on, or 0; nothing without masks."""
+    tables: Sequence[Table] = field(default=())
+    table_of: Sequence[int] = ()
+    """Per column the number of its table, likewise."""
+
+    @classmethod
+    def find(cls, values: Values) -> tuple[Self, Values, list[Mask]]:
+        """Find them; give the numbers to code, (F, C), and the masks, too."""
+        masks, tables = Masks(), Tables()
+        numbers = np.empty(values.shape[::-1])
+        masks_of, table_of = [], []
+        for column, own in enumerate(np.ascontiguousarray(values.T)):
+            left, gap = masks.take_gaps(own)
+            left, zero = masks.take_zeros(left, -0.0)
+            table = tables.find(left)
+            if not table and not zero and not (np.rint(left) == left).all():
+                left, zero = masks.take_zeros(left, 0.0)
+                table = tables.find(left) if zero else 0
+            numbers[column] = coded(tables.made[table - 1], left) if table else left
+            masks_of.append((gap, zero))
+            table_of.append(table)
+        used = masks_of if masks.masks else []
+        told = cls(masks.values, used, tables.made, table_of if tables.made else [])
+        return told, np.ascontiguousarray(numbers.T), masks.masks
+
+    def write(self, writer: Writer) -> None:
+        """Append them to a header: nothing where there are none."""
+        if not self.values and not self.tables:
+            return
+        writer.integer(len(self.values))
+        for value in self.values:
+            writer.double(value)
+        if self.values:
+            for place in (0, 1):
+                write_palette(writer, [masks[place] for masks in self.masks_of])
+        writer.integer(len(self.tables))
+        if self.tables:
+            write_tables(writer, self.tables)
+            write_palette(writer, self.table_of)
+
+    @classmethod
+    def read(cls, reader: Reader, columns: int) -> Self:
+        """Take what is left of a header.
+
+        Raises
+        ------
+        CorruptError
+            When it is not what ``write`` writes.
+
+        """
+        if not reader.left:
+            return cls()
+        values = [reader.double() for _ in range(reader.count(8))]
+        masks_of: list[tuple[int, int]] = []
+        if values:
+            first, second = (read_palette(reader, columns, len(values)) for _ in range(2))
+            masks_of = list(zip(first, second, strict=True))
+        count = reader.count()
+        tables = read_tables(reader, count)
+        table_of = read_palette(reader, columns, count) if count else []
+        return cls(values, masks_of, tables, table_of)
+
+    def pack(self, payload: bytes, masks: Sequence[Mask]) -> bytes:
+        """Give a chunk's payload with the runs of its masks before it."""
+        if not self.values:
+            return payload
+        writer = Writer()
+        for mask in masks:
+            write_runs(writer, mask)
+        return bytes(writer.data) + payload
+
+    def unpack(self, payload: bytes, frames: int, where: str) -> tuple[bytes, list[Mask]]:
+        """Take the runs of masks off a chunk's payload."""
+        if not self.values:
+            return payload, []
+        reader = Reader(payload, where)
+        masks = [read_runs(reader, frames) for _ in self.values]
+        return reader.raw(reader.left), masks
+
+    def restore(self, rows: Values, masks: Sequence[Mask]) -> None:
+        """Put the numbers of tables, and gaps, in the place of what was coded, (F, C).
+
+        Raises
+        ------
+        CorruptError
+            When a place is not in its table.
+
+        """
+        for column, number in enumerate(self.table_of):
+            if number:
+                own = np.ascontiguousarray(rows[:, column])
+                rows[:, column] = decoded(self.tables[number - 1], own)
+        for column, (gap, zero) in enumerate(self.masks_of):
+            for number in filter(None, (zero, gap)):
+                rows[masks[number - 1][: len(rows)], column] = self.values[number - 1]
