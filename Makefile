@@ -99,9 +99,11 @@ $(wasm_modules): build/wasm/%.wasm: $(wildcard core/wasm/*) $(kernels) $(headers
 	$(ZIG) -Os -mexec-model=reactor core/wasm/space.cpp core/wasm/$*.cpp $(if $(filter $*,$(decoders)),core/wasm/decoder.cpp) \
 	    $(wildcard $(patsubst %,core/%/*.cpp,$(if $(filter kinematics,$*),motion,$*) $*_fast coding numbers)) -o $@
 
-# The compiler for WebAssembly has 0.4 GB; no user needs it, and developers only for `make wasm`.
-$(VENV)/.zig: | $(VENV)/.built
-	$(BIN)/pip install --quiet --disable-pip-version-check 'mocapress[wasm]'
+# The compiler for WebAssembly has 0.4 GB; no user needs it, and developers only for `make wasm`. One
+# version, so that every machine builds the same bytes.
+$(VENV)/.zig:
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check ziglang==0.17.1
 	@touch $@
 
 # A codec's kernels built in other ways, build/check/WAY/CODEC: each must print what
