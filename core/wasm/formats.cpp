@@ -9,6 +9,7 @@
 
 #include "coding/record.hpp"
 #include "formats/motion_file.hpp"
+#include "formats/text.hpp"
 #include "wasm/json.hpp"
 #include "wasm/space.hpp"
 
@@ -61,6 +62,12 @@ void say_fault(Json& json, const Problem& fault, bool of_skeleton) {
   json.key("ofSkeleton").word(of_skeleton ? "true" : "false");
 }
 
+// A file as the readers take it: one in UTF-16 becomes UTF-8.
+std::string_view readable(std::string_view bytes, std::optional<std::string>& converted) {
+  converted = from_utf16(bytes);
+  return converted ? std::string_view(*converted) : bytes;
+}
+
 void say_file(Json& json, bool bvh, std::string_view file, const Skeleton* skeleton) {
   MotionFile read = bvh ? read_bvh(file) : read_amc(file, skeleton);
   if (read.fault) return say_fault(json, *read.fault, false);
@@ -102,8 +109,9 @@ const char* answer(std::optional<std::string_view> asf, Work work) {
   Json json;
   json.open('{');
   numbers.clear();
+  std::optional<std::string> converted;
   std::optional<SkeletonFile> skeleton;
-  if (asf) skeleton = read_asf(*asf);
+  if (asf) skeleton = read_asf(readable(*asf, converted));
   if (skeleton && skeleton->fault) {
     say_fault(json, *skeleton->fault, true);
   } else {
@@ -129,7 +137,8 @@ extern "C" {
   const std::string_view all(reinterpret_cast<const char*>(space().data()), size + asf);
   const auto beside = has_asf ? std::optional(all.substr(size)) : std::nullopt;
   return answer(beside, [&](Json& json, const Skeleton* skeleton) {
-    say_file(json, bvh, all.substr(0, size), skeleton);
+    std::optional<std::string> converted;
+    say_file(json, bvh, readable(all.substr(0, size), converted), skeleton);
   });
 }
 

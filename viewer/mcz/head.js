@@ -220,7 +220,7 @@ function readFormats(record, count) {
   const known = record.list(record.count(4), () => {
     const [kind, digits, exponent, flags] = record.raw(4);
     const most = kind === 0 ? 17 : MOST_DIGITS;
-    if (kind > 5 || digits > most || (kind === 0 && !digits) || exponent > 8 || flags > 7) {
+    if (kind > 5 || digits > most || (kind === 0 && !digits) || exponent > 8 || (flags & 192) === 192) {
       throw record.fail("no number format");
     }
     return [kind, digits];
