@@ -81,7 +81,8 @@ def series(first: Fraction, step: Fraction, rows: int) -> Values:
     """Give first + row * step, each number correctly rounded as long as it is a quotient."""
     low = first.denominator * step.denominator
     start, by = first * low, step * low
-    return (float(start) + float(by) * np.arange(rows)) / float(low)
+    found: Values = (float(start) + float(by) * np.arange(rows, dtype=np.float64)) / float(low)
+    return found
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -332,7 +333,7 @@ def _columns(of_columns: list[Cells]) -> tuple[tuple[TableColumn, ...], list[Val
 
 def _column_of_texts(cells: Cells) -> TableColumn | None:
     """Give the column where it holds no numbers, or one text."""
-    if len(set(cells)) == 1:
+    if len(set(cells)) == 1 and not _NUMBER.match(cells[0].strip()):
         return TableColumn(SAME, text=cells[0])
     numbers = missing = 0
     for cell in cells:

@@ -27,6 +27,8 @@ from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.clip import FrameTime
 from mocapress.motion.columns import numbered_columns
 
+CSV = "csv"
+"""Id of the format."""
 TABLE = "table"
 """Name of the stream that holds the columns of numbers."""
 _ROWS_AT_LEAST = 3
@@ -35,7 +37,7 @@ _TIME = re.compile(r"(time|timestamp|t|seconds|time *\(?s(econds)?\)?)\Z", re.IG
 Values = NDArray[np.float64]
 
 
-def split(data: bytes, _skeleton: Skeleton | None, file: str | None, *, kind: str = TABLE) -> Split:
+def split(data: bytes, _skeleton: Skeleton | None, file: str | None, *, kind: str = CSV) -> Split:
     """Take a table apart.
 
     Raises
@@ -146,7 +148,7 @@ def _recognised(head: bytes) -> bool:
         return False
     whole = head[: head.rfind(b"\n") + 1]
     try:
-        layout, values, _ = split_table(whole, TABLE, None)
+        layout, values, _ = split_table(whole, CSV, None)
     except FormatError:
         return False
     enough = layout.rows >= _ROWS_AT_LEAST and values.shape[1] > 1 and not layout.verbatim
@@ -154,11 +156,11 @@ def _recognised(head: bytes) -> bool:
 
 
 FORMAT = Format(
-    id=TABLE,
+    id=CSV,
     name="CSV",
     suffixes=(".csv", ".tsv", ".mot", ".sto"),
     recognises=_recognised,
     split=split,
-    read_layout=partial(read_layout, kind=TABLE),
+    read_layout=partial(read_layout, kind=CSV),
     describe=described,
 )

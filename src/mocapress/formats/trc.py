@@ -4,9 +4,11 @@ from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mocapress.errors import FormatError, UnsupportedError
 from mocapress.formats.c3d_parameters import POINTS
@@ -18,6 +20,8 @@ from mocapress.formats.tables import TABLE, full_values, header_lines
 from mocapress.formats.tables import split as split_table
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.clip import short_decimal
+
+Values = NDArray[np.float64]
 
 _BEFORE = 2
 """Columns before the markers: the frame's number and the time."""
@@ -52,7 +56,7 @@ def split(data: bytes, skeleton: Skeleton | None, file: str | None) -> Split:
 def _facts(layout: TableLayout) -> dict[str, str]:
     """Give what the header says: names in one line, values in the next."""
     lines = header_lines(layout)
-    for names, values in zip(lines, lines[1:], strict=False):
+    for names, values in pairwise(lines):
         if names[0] == "DataRate":
             return {name: value for name, value in zip(names, values, strict=False) if name}
     return {}
@@ -127,7 +131,8 @@ def write(clip: Clip) -> dict[str, bytes]:
         [cell if cell != b"nan" else b"" for cell in printed(row, SHORTEST)]
         for row in stream.values
     ]
-    times = printed(np.arange(stream.frames) * float(time), SHORTEST)
+    moments: Values = np.arange(stream.frames, dtype=np.float64) * float(time)
+    times = printed(moments, SHORTEST)
     rows = [
         b"\t".join([str(i + 1).encode(), times[i], *row]) + b"\n" for i, row in enumerate(cells)
     ]
