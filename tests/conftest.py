@@ -5,9 +5,11 @@ from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
+from takes import rows_of
 
 from mocapress import codecs
 from mocapress.codecs.fallback import RAISE_VARIABLE
+from mocapress.library import Library, open_library
 
 SAMPLES = Path(__file__).parents[1] / "samples"
 # Machines differ in speed: what counts is what holds, not how fast.
@@ -47,3 +49,13 @@ def learner(monkeypatch: pytest.MonkeyPatch) -> str:
     registry = codecs._REGISTRY | {"learner": ("learner", "Learner")}
     monkeypatch.setattr(codecs, "_REGISTRY", registry)
     return "learner"
+
+
+@pytest.fixture(scope="session")
+def take(samples: Path) -> tuple[bytes, list[bytes]]:
+    return rows_of((samples / "cmu_01_01.amc").read_bytes())
+
+
+@pytest.fixture
+def library(tmp_path: Path) -> Library:
+    return open_library(tmp_path / "library.mocapdb", "a")

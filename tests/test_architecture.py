@@ -20,6 +20,7 @@ ROWS = [
     {"container"},
     {"models"},
     {"api"},
+    {"library"},
     {"describe", "viewer"},
     {"cli"},
 ]

@@ -44,6 +44,15 @@ def test_the_guide_to_models_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     exec(code, {})
 
 
+def test_the_guide_to_libraries_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("freebvh", "mocapbank"):
+        shutil.copy(ROOT / f"samples/{name}.bvh", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    guide = (ROOT / "docs/guide/library.md").read_text()
+    (code,) = re.findall(r"```python\n(.*?)```", guide, re.DOTALL)
+    exec(code, {})
+
+
 def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for suffix in ("amc", "asf"):
         shutil.copy(ROOT / f"samples/cmu_01_01.{suffix}", tmp_path / f"walk.{suffix}")
@@ -51,7 +60,7 @@ def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     shutil.copy(ROOT / "samples/freebvh.bvh", tmp_path / "clips")
     monkeypatch.chdir(tmp_path)
     commands = re.findall(r"^\$ mocapress (.*?)(?:  #.*)?$", README, re.MULTILINE)
-    assert len(commands) == 12
+    assert len(commands) == 15
     for command in commands:
         if command.startswith("decompress"):
             Path("walk.amc").rename("original.amc")

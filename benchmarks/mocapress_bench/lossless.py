@@ -11,7 +11,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from mocapress.api import Opened
-from mocapress.api.compressing import CodedStream, motion_file
+from mocapress.api.compressing import motion_file
+from mocapress.api.encoding import CodedStream
 from mocapress.api.restoring import layout_of
 from mocapress.codecs import Chunk, Codec, Model
 from mocapress.container import StreamHead

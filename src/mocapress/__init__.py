@@ -11,6 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from mocapress.errors import (
+    BusyError,
     CorruptError,
     FormatError,
     MissingModelError,
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from mocapress.api import compress, decompress, load, read, verify, write, writer
     from mocapress.codecs import Model, codec
     from mocapress.container.diffma_json import to_json
+    from mocapress.library import Library, StoredClip, open_library
     from mocapress.models import load_model, save_model, train
     from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton, Stream
     from mocapress.motion.convert import to_amc_clip, to_bvh_clip
@@ -33,12 +35,14 @@ if TYPE_CHECKING:
     from mocapress.storage import ExistsError
 
 __all__ = [
+    "BusyError",
     "Clip",
     "Column",
     "CorruptError",
     "ExistsError",
     "FormatError",
     "Joint",
+    "Library",
     "MissingModelError",
     "MocapressError",
     "Model",
@@ -46,6 +50,7 @@ __all__ = [
     "NumberFormat",
     "ParameterError",
     "Skeleton",
+    "StoredClip",
     "Stream",
     "UnsupportedError",
     "VerificationError",
@@ -55,6 +60,7 @@ __all__ = [
     "decompress",
     "load",
     "load_model",
+    "open_library",
     "positions",
     "read",
     "rotations",
@@ -81,6 +87,7 @@ _LAZY = {
         ("Clip", "Column", "Joint", "NumberFormat", "Skeleton", "Stream"), "mocapress.motion"
     ),
     **dict.fromkeys(("positions", "rotations"), "mocapress.motion.kinematics"),
+    **dict.fromkeys(("Library", "StoredClip", "open_library"), "mocapress.library"),
     **dict.fromkeys(("load_model", "save_model", "train"), "mocapress.models"),
 }
 

@@ -82,6 +82,10 @@ class ParameterError(MocapressError):
     """A parameter of a codec or command has a value it cannot have."""
 
 
+class BusyError(MocapressError):
+    """Another process is writing to the library, and did not end in time."""
+
+
 class MissingModelError(MocapressError):
     """The model that a compressed file needs was not found."""
 

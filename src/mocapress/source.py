@@ -14,7 +14,7 @@ import weakref
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import BinaryIO, TypeVar
 
 import numpy as np
@@ -40,6 +40,7 @@ _HEAD = 2**16
 GIVEN, SAME_NAME, SUBJECT = "given", "same name", "subject"
 ONLY_ONE, EMBEDDED = "only one in the folder", "embedded"
 T = TypeVar("T")
+P = TypeVar("P", bound=PurePath)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +65,9 @@ class Source:
         when and as far as it is asked for.
     name
         For messages, and to tell the kind by its suffix; without it, the path.
+    look
+        Finds the skeleton of a file that does not lie in a folder: given the suffixes of skeletons
+        and those of the file's format.
 
     Raises
     ------
@@ -72,12 +76,18 @@ class Source:
 
     """
 
-    def __init__(self, named: Named, name: str | None = None) -> None:
+    def __init__(
+        self,
+        named: Named,
+        name: str | None = None,
+        look: "Callable[[tuple[str, ...], tuple[str, ...]], Beside | None] | None" = None,
+    ) -> None:
         self.path = Path(named) if isinstance(named, str | Path) else None
         self.name = _name(named) if name is None else name
         self.used: Beside | None = None
         """The skeleton that was used, of those that lie beside the file or in it."""
         self.warnings: list[MotionWarning] = []
+        self._look = look
         self._descriptor: int | None = None
         if isinstance(named, bytes | bytearray | memoryview):
             self._contents = bytes(named)
@@ -243,6 +253,8 @@ class Source:
             return Beside(str(asf_path), GIVEN, Source(asf_path).read)
         if embedded:
             return Beside(self.name, EMBEDDED, lambda: embedded)
+        if self._look is not None:
+            return self._look(companion.suffixes, of.suffixes)
         found = find_beside(self.path, companion.suffixes, of.suffixes) if self.path else None
         if found is None:
             return None
@@ -322,9 +334,16 @@ def find_beside(
 
     """
     try:
-        candidates = sorted(p for p in path.parent.iterdir() if p.name.lower().endswith(suffixes))
+        return choose_beside(path, path.parent.iterdir(), suffixes, own)
     except OSError:
         return None
+
+
+def choose_beside(
+    path: PurePath, among: Iterable[P], suffixes: tuple[str, ...], own: tuple[str, ...] = ()
+) -> tuple[P, str] | None:
+    """Choose as ``find_beside`` does, among the files of the folder."""
+    candidates = sorted(p for p in among if p.name.lower().endswith(suffixes))
     stem = _without(_without(path.name.lower(), (".mcz",)), own)
     names = {candidate: _without(candidate.name.lower(), suffixes) for candidate in candidates}
     same = [c for c in candidates if names[c] == stem]

@@ -60,6 +60,7 @@ def write_all(
     force: bool = False,
     like: os.stat_result | None = None,
     times: bool = True,
+    modified: int | None = None,
 ) -> None:
     """Write files that belong together: all of them, or none.
 
@@ -78,6 +79,8 @@ def write_all(
         permissions, and a new one has the usual ones.
     times
         Whether they get the modification time of ``like``, too.
+    modified
+        Their modification time, in nanoseconds since 1970, where there is no such file.
 
     Raises
     ------
@@ -97,7 +100,8 @@ def write_all(
         parts = []
         for (path, data), target in zip(whole, targets, strict=True):
             with _naming(path):
-                part = stack.enter_context(_part(target, data, like, times=times))
+                changed = like.st_mtime_ns if like and times else modified
+                part = stack.enter_context(_part(target, data, like, changed))
             parts.append((path, target, part))
         _commit(parts, force=force)
     for folder in {target.parent for target in targets}:
@@ -146,7 +150,9 @@ def check_targets(paths: Sequence[Path], *, force: bool) -> None:
 
 
 @contextmanager
-def _part(target: Path, data: bytes, like: os.stat_result | None, *, times: bool) -> Iterator[Path]:
+def _part(
+    target: Path, data: bytes, like: os.stat_result | None, changed: int | None
+) -> Iterator[Path]:
     """Write the data under a temporary name, which is gone at the end."""
     model = like
     if model is None:
@@ -159,9 +165,9 @@ def _part(target: Path, data: bytes, like: os.stat_result | None, *, times: bool
         _write(descriptor, data)
         if model is not None and os.name == "posix":
             _permit(descriptor, model)
-        if like is not None and times:
+        if changed is not None:
             with suppress(OSError):
-                os.utime(part, ns=(like.st_atime_ns, like.st_mtime_ns))
+                os.utime(part, ns=(like.st_atime_ns if like else changed, changed))
         os.fsync(descriptor)
         if not LOCKS:  # Windows renames no file that is open
             stream.close()

@@ -1,7 +1,8 @@
 """The Python interface: ``import mocapress as mp``."""
 
 from mocapress.api.checking import Checked, verify, verify_source
-from mocapress.api.compressing import Compressed, compress, compress_clip, compress_source
+from mocapress.api.clips import Compressed, compress_clip
+from mocapress.api.compressing import compress, compress_source
 from mocapress.api.loading import columns_of, load, load_source
 from mocapress.api.opening import Opened
 from mocapress.api.reading import printed, read, read_source, write

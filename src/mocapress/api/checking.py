@@ -46,7 +46,11 @@ def verify_source(source: Source, models: Sequence[Place] = ()) -> Checked:
     """Check a file; see ``verify``."""
     if source.kind == DIFFMA_JSON:  # a layout is not needed to be sound
         return Checked(diffma_json.json_to_clip(source.data).values.nbytes, ())
-    opened = Opened(source, models, salvage=True)
+    return verify_opened(Opened(source, models, salvage=True))
+
+
+def verify_opened(opened: Opened) -> Checked:
+    """Check a file that was opened to be salvaged; see ``verify``."""
     original, size = opened.mcz.original, 0
     for index, head in enumerate(opened.streams):
         if head.kind == CHANNELS:

@@ -2,20 +2,19 @@
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path, PurePath
-from typing import NamedTuple
 
-from mocapress import codecs
-from mocapress.api.encoding import coded, placed, stored_skeleton
+from mocapress.api.clips import Compressed, checked_codec, compress_clip, readable
+from mocapress.api.encoding import CodedStream, coded, coded_streams, placed, stored_skeleton
 from mocapress.api.opening import Opened
 from mocapress.api.restoring import printed
-from mocapress.codecs import DEFAULT_CODEC, Codec, Encoded, Model
+from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.codecs.fallback import first_that_works
 from mocapress.codecs.loss import Loss, checked_loss
 from mocapress.container import Companion, Head, MczWriter, Original, is_storable_time, pack
 from mocapress.container.columns import bones_of
-from mocapress.errors import CorruptError, FormatError, UnsupportedError, VerificationError
+from mocapress.errors import CorruptError, FormatError, VerificationError
 from mocapress.formats import Split
 from mocapress.formats.layout_record import write_layout
 from mocapress.formats.patterns import References
@@ -28,19 +27,6 @@ _SMALL = 2**15
 # Files of stored numbers, unlike text, may repeat themselves.
 _SMALL_OF_NUMBERS = 2**23
 _POOR = 0.4
-_LONGEST_CHUNK = 2**20
-
-
-@dataclass(frozen=True, slots=True)
-class Compressed:
-    """What ``compress_source`` made."""
-
-    blob: bytes
-    """The ``.mcz`` file."""
-    warning: str | None
-    """Why the numbers, or a part of them, were not compressed as motion."""
-    loss: Loss | None = None
-    """What a lossy codec lost, measured from what it decodes to; None where nothing is lost."""
 
 
 def compress(
@@ -108,24 +94,86 @@ def compress_source(
     notes: Mapping[str, str] | None = None,
 ) -> Compressed:
     """Compress a file; see ``compress``."""
-    made = _codec(codec, model)
-    data = source.data
-    blob, warning, loss, small = None, None, None, _SMALL
+    made = checked_codec(codec, model)
+    parts, warning = taken_apart(source, asf_path)
+    embed = embed_asf and source.used is not None
+    if embed:
+        source.warn_of_guess()
+    # The skeleton of another file is stored only where that was asked for.
+    return compress_parts(
+        source,
+        parts,
+        made,
+        with_skeleton=embed or source.used is None,
+        companions=_companions(source) if embed else [],
+        model=model,
+        notes=notes,
+        warning=warning,
+    )
+
+
+def taken_apart(
+    source: Source, asf_path: str | Path | None = None
+) -> tuple[Split | None, str | None]:
+    """Take a file apart; where it is no motion that can be read, say so in a warning instead.
+
+    Raises
+    ------
+    FormatError
+        When the ASF that was given cannot be read.
+
+    """
     if source.format is None:
-        warning = "not a motion file; stored by a general-purpose compressor"
-    elif source.format.split:
-        try:
-            parts = source.split(asf_path)
-        except FormatError as error:
-            if asf_path is not None and error.file == str(asf_path):
-                raise
-            warning = f"{error}; stored by a general-purpose compressor"
+        return None, "not a motion file; stored by a general-purpose compressor"
+    if source.format.split is None:
+        return None, None
+    try:
+        return source.split(asf_path), None
+    except FormatError as error:
+        if asf_path is not None and error.file == str(asf_path):
+            raise
+        return None, f"{error}; stored by a general-purpose compressor"
+
+
+def compress_parts(
+    source: Source,
+    parts: Split | None,
+    codec: Codec,
+    *,
+    with_skeleton: bool,
+    companions: Sequence[Companion] = (),
+    model: Model | None = None,
+    notes: Mapping[str, str] | None = None,
+    warning: str | None = None,
+) -> Compressed:
+    """Compress a file that was taken apart; see ``compress`` and ``taken_apart``."""
+    data = source.data
+    blob, loss, small = None, None, _SMALL
+    if parts is not None:
+        small = _SMALL if parts.stored is None else _SMALL_OF_NUMBERS
+        warning = _warning_of(parts, source)
+        reason = unfit(parts, len(data))
+        if reason:
+            warning = warning or f"{reason}; stored by a general-purpose compressor"
         else:
-            embed = embed_asf and source.used is not None
-            if embed:
-                source.warn_of_guess()
-            small = _SMALL if parts.stored is None else _SMALL_OF_NUMBERS
-            blob, warning, loss = _compress_motion(source, parts, made, embed, model, notes or {})
+
+            def work(way: Codec) -> tuple[bytes, Loss | None]:
+                own = model if way is codec else None
+                made = motion_file(
+                    parts,
+                    data,
+                    stored_name(source.name),
+                    coded_streams(parts.clip, way, own),
+                    own,
+                    with_skeleton=with_skeleton,
+                    companions=companions,
+                    notes=notes,
+                )
+                return made, _check(made, data, way, parts.clip, own)
+
+            found, failure = first_that_works(codec, work)
+            blob, loss = found or (None, None)
+            warning = "; ".join(filter(None, (failure, warning))) or None
     if blob is None or len(data) < small or len(blob) > _POOR * len(data):
         plain = _compress_plain(source, notes or {})
         if blob is None or len(plain) < len(blob):
@@ -133,117 +181,20 @@ def compress_source(
     return Compressed(blob, warning, loss)
 
 
-def compress_clip(
-    clip: Clip,
-    codec: str | Codec = DEFAULT_CODEC,
-    *,
-    model: Model | None = None,
-    notes: Mapping[str, str] | None = None,
-) -> Compressed:
-    """Compress a clip; see ``compress``. The model is for its first stream."""
-    made = _codec(codec, model)
-    skeleton = stored_skeleton(clip)
-    heads, chunks = [], []
-    for index, (name, stream) in enumerate(clip.streams.items()):
-        if not is_storable_time(stream.frame_time):
-            raise UnsupportedError("frame time", found=str(stream.frame_time))
-        alone, own = Clip({name: stream}, clip.skeleton), model if index == 0 else None
-        head, of_stream = coded(
-            alone, name, index, made, made.encode(stream, skeleton=clip.skeleton, model=own), own
-        )
-        heads.append(head)
-        chunks += of_stream
-    facts = {**({"name": clip.name} if clip.name else {}), **clip.metadata}
-    said = {key: _readable(fact) for key, fact in facts.items()} | dict(notes or {})
-    parts: list[bytes] = []
-    writer = MczWriter(parts.append)
-    writer.head(Head(tuple(heads), skeleton))
-    if said:
-        writer.notes(said)
-    for chunk in chunks:
-        writer.chunk(chunk)
-    writer.end()
-    blob = b"".join(parts)
-    opened = Opened(Source(blob), [model] if model else [])
-    loss = None
-    for index, (name, stream) in enumerate(clip.streams.items()):
-        rows = opened.rows(index).values
-        if not made.lossless:
-            alone = Clip({name: stream})
-            found = checked_loss(made, alone, rows)
-            loss = loss or found
-        elif rows.tobytes() != stream.values.tobytes():
-            raise VerificationError(f"codec {made.id} does not give back stream {name!r}")
-    return Compressed(blob, None, loss)
+def _warning_of(parts: Split, source: Source) -> str | None:
+    file = source.name or None
+    return "; ".join(str(problem.error(file)) for problem in parts.problems) or None
 
 
-def _codec(codec: str | Codec, model: Model | None) -> Codec:
-    made = codecs.codec(codec) if isinstance(codec, str) else codec
-    if model is not None:
-        codecs.learner(made, model)
-    return made
-
-
-def _compress_motion(
-    source: Source,
-    parts: Split,
-    codec: Codec,
-    embed: bool,
-    model: Model | None,
-    notes: Mapping[str, str],
-) -> tuple[bytes | None, str | None, Loss | None]:
-    clip, layout, problems, _ = parts
-    data, file = source.data, source.name or None
-    warning = "; ".join(str(problem.error(file)) for problem in problems) or None
-    irregular = layout.verbatim_bytes() + len(layout.tail) > len(data) / 2
-    if not clip.frames or irregular or not is_storable_time(clip.frame_time):
-        reason = "numbers in no regular form" if clip.frames else "no frames"
-        return None, warning or f"{reason}; stored by a general-purpose compressor", None
-    embedded = _companions(source) if embed else []
-    # The skeleton of another file is stored only where that was asked for.
-    with_skeleton = embed or source.used is None
-
-    def work(way: Codec) -> tuple[bytes, Loss | None]:
-        own = model if way is codec else None
-        blob = motion_file(
-            parts,
-            data,
-            _name(source.name),
-            _coded_streams(clip, way, own),
-            own,
-            with_skeleton=with_skeleton,
-            companions=embedded,
-            notes=notes,
-        )
-        return blob, _check(blob, data, way, clip, own)
-
-    found, failure = first_that_works(codec, work)
-    blob, loss = found or (None, None)
-    return blob, "; ".join(filter(None, (failure, warning))) or None, loss
-
-
-class CodedStream(NamedTuple):
-    """What a codec made of a stream."""
-
-    codec: Codec
-    encoded: Encoded
-
-
-def _coded_streams(clip: Clip, codec: Codec, model: Model | None) -> list[CodedStream]:
-    """Code all streams of a motion file; a lossy codec and the model are for the first."""
-    made = []
-    for index, stream in enumerate(clip.streams.values()):
-        way = codec if index == 0 or codec.lossless else codecs.codec(DEFAULT_CODEC)
-        # Chunks of all streams last as long.
-        times = stream.frames // clip.frames
-        chunk = getattr(way, "chunk", None)
-        if chunk and times > 1:
-            way = codecs.from_parameters(
-                way.id, {**codecs.parameters(way), "chunk": min(chunk * times, _LONGEST_CHUNK)}
-            )
-        own = model if index == 0 else None
-        made.append(CodedStream(way, way.encode(stream, skeleton=clip.skeleton, model=own)))
-    return made
+def unfit(parts: Split, size: int) -> str | None:
+    """Say why a file of so many bytes cannot be compressed as motion; None where it can."""
+    clip, layout, *_ = parts
+    if not clip.frames:
+        return "no frames"
+    irregular = layout.verbatim_bytes() + len(layout.tail) > size / 2
+    if irregular or not is_storable_time(clip.frame_time):
+        return "numbers in no regular form"
+    return None
 
 
 def motion_file(
@@ -305,14 +256,9 @@ def motion_file(
     return b"".join(made)
 
 
-def _name(path: str) -> str:
+def stored_name(path: str) -> str:
     """Give a file's name without folders."""
-    return _readable(PurePath(path).name)
-
-
-def _readable(name: str) -> str:
-    """Replace what is no UTF-8 in the name of a file."""
-    return name.encode(errors="surrogateescape").decode(errors="replace")
+    return readable(PurePath(path).name)
 
 
 def _companions(source: Source) -> list[Companion]:
@@ -320,7 +266,7 @@ def _companions(source: Source) -> list[Companion]:
     of = source.format
     if used is None or of is None or of.companion is None:
         return []
-    return [Companion(of.companion, _name(used.file), used.read())]
+    return [Companion(of.companion, stored_name(used.file), used.read())]
 
 
 def _check(blob: bytes, data: bytes, codec: Codec, clip: Clip, model: Model | None) -> Loss | None:
@@ -343,7 +289,7 @@ def _check(blob: bytes, data: bytes, codec: Codec, clip: Clip, model: Model | No
 
 def _compress_plain(source: Source, notes: Mapping[str, str]) -> bytes:
     data = source.data
-    name, digest = _name(source.name), hashlib.sha256(data).digest()
+    name, digest = stored_name(source.name), hashlib.sha256(data).digest()
     parts: list[bytes] = []
     writer = MczWriter(parts.append)
     writer.original(Original("", name, len(data), digest, (), pack(data, hard=True)))

@@ -2,16 +2,19 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import codecs
 from mocapress.api.opening import decoded, digest
-from mocapress.codecs import Codec, Encoded, Model
+from mocapress.codecs import DEFAULT_CODEC, Codec, Encoded, Model
 from mocapress.container import CodecSpec, CodedChunk, Entry, StreamHead, is_storable
 from mocapress.errors import UnsupportedError
 from mocapress.motion import Clip, Column, Skeleton, Stream
+
+_LONGEST_CHUNK = 2**20
 
 
 def stream_head(name: str, stream: Stream, codec: Codec, *, frames: int | None) -> StreamHead:
@@ -70,6 +73,36 @@ def coded_chunks(
         header = encoded.header if own_header else b""
         chunks.append(CodedChunk(entry, digest(rows), header, chunk.payload, chunk.needs))
     return chunks
+
+
+class CodedStream(NamedTuple):
+    """What a codec made of a stream."""
+
+    codec: Codec
+    encoded: Encoded
+
+
+def coded_streams(
+    clip: Clip, codec: Codec, model: Model | None, whole: Clip | None = None
+) -> list[CodedStream]:
+    """Code all streams of a motion file; a lossy codec and the model are for the first.
+
+    ``whole`` is the file's clip where some of its frames are not coded.
+    """
+    made = []
+    whole = whole or clip
+    for index, (name, stream) in enumerate(clip.streams.items()):
+        way = codec if index == 0 or codec.lossless else codecs.codec(DEFAULT_CODEC)
+        # Chunks of all streams last as long.
+        times = whole.streams[name].frames // whole.frames
+        chunk = getattr(way, "chunk", None)
+        if chunk and times > 1:
+            way = codecs.from_parameters(
+                way.id, {**codecs.parameters(way), "chunk": min(chunk * times, _LONGEST_CHUNK)}
+            )
+        own = model if index == 0 else None
+        made.append(CodedStream(way, way.encode(stream, skeleton=clip.skeleton, model=own)))
+    return made
 
 
 def placed(columns: Sequence[Column]) -> tuple[Column, ...]:

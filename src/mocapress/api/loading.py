@@ -98,7 +98,19 @@ def load_source(
         clip = diffma_json.json_to_clip(source.data)
         return clip if frames is None else clip[frames]
     opened = Opened(source, models, salvage=errors == _SKIP)
-    original = opened.mcz.original
+    return load_opened(opened, frames, stream=stream, asf_path=asf_path, strict=strict)
+
+
+def load_opened(
+    opened: Opened,
+    frames: slice | None = None,
+    *,
+    stream: str | None = None,
+    asf_path: str | Path | None = None,
+    strict: bool = True,
+) -> Clip:
+    """Load a clip from a file that is open; see ``load``."""
+    source, original = opened.source, opened.mcz.original
     if not opened.streams:
         clip = _of_contents(opened, asf_path, strict=strict)
         return clip if frames is None else clip[frames]
@@ -145,7 +157,7 @@ def _clip(
     streams = {}
     for index in wanted:
         head = opened.streams[index]
-        rows = range(opened.mcz.frames(index))[frames or slice(None)]
+        rows = range(opened.frames(index))[frames or slice(None)]
         values = np.empty((0, len(head.columns)))
         if rows:
             first, last = min(rows[0], rows[-1]), max(rows[0], rows[-1]) + 1

@@ -72,6 +72,10 @@ class Opened:
         """What the file says about its streams."""
         return self.mcz.head.streams if self.mcz.head else ()
 
+    def frames(self, stream: int = 0) -> int:
+        """Give how many frames a stream has."""
+        return self.mcz.frames(stream)
+
     def codec(self, stream: int = 0) -> Codec:
         """Give the codec of a stream."""
         if stream not in self._codecs:
@@ -82,7 +86,8 @@ class Opened:
                 raise CorruptError(f"stream {self.streams[stream].name!r}: {error}") from error
         return self._codecs[stream]
 
-    def _model(self, stream: int) -> Model | None:
+    def model(self, stream: int = 0) -> Model | None:
+        """Give the model that a stream needs, if it needs one."""
         if stream not in self._models:
             self._models[stream] = self._find_model(stream)
         return self._models[stream]
@@ -168,7 +173,7 @@ class Opened:
         head = self.streams[stream]
         header = read[0].header if group[0].own_header else head.header
         stop = min(last, group[-1].last) - group[0].first
-        values = decoded(self.codec(stream), header, chunks, head, self._model(stream), stop)
+        values = decoded(self.codec(stream), header, chunks, head, self.model(stream), stop)
         parts = []
         for chunk in read:
             begin = chunk.entry.first - group[0].first

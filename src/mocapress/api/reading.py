@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from mocapress import formats
-from mocapress.api.compressing import compress_clip
+from mocapress.api.clips import compress_clip
 from mocapress.container import diffma_json
 from mocapress.errors import UnsupportedError
 from mocapress.formats import Format

@@ -71,8 +71,12 @@ def restore(source: Source, models: Sequence[Place] = (), *, salvage: bool = Fal
     if source.kind == DIFFMA_JSON:
         kind, data = diffma_json.json_to_file(source.data)
         return Restored(data, kind)
-    opened = Opened(source, models, salvage=salvage)
-    original = opened.mcz.original
+    return restore_opened(Opened(source, models, salvage=salvage))
+
+
+def restore_opened(opened: Opened) -> Restored:
+    """Restore a file from one that is open; see ``decompress``."""
+    source, original = opened.source, opened.mcz.original
     if original is None:
         if opened.damage:
             raise CorruptError("the section with the file's layout is damaged")
@@ -138,7 +142,7 @@ def layout_of(opened: Opened, original: Original, rows: int) -> Layout:
     return read_layout(
         original.layout(),
         original.format,
-        opened.mcz.frames(),
+        opened.frames(),
         tuple(column.decimal or SHORTEST for column in stream.columns),
         references(opened, stream),
         limits.most_layout(original.size),

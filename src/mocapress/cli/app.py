@@ -9,6 +9,7 @@ from mocapress.cli.convert import convert
 from mocapress.cli.decompress import decompress
 from mocapress.cli.info import info
 from mocapress.cli.installed import Commands
+from mocapress.cli.library import app as library
 from mocapress.cli.options import Debug
 from mocapress.cli.train import train
 from mocapress.cli.verify import verify
@@ -48,3 +49,4 @@ def options(
 
 for _command in (compress, decompress, verify, train, info, convert, view):
     app.command()(_command)
+app.add_typer(library, name="library")

@@ -5,7 +5,7 @@ import queue
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from mocapress.source import Source
 
 STREAM = Path("-")
+_AHEAD = 2
+"""Jobs that are ready when a thread is done with one."""
 # Windows has no SIGHUP.
 _ENDING = [
     signal.Signals[name] for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
@@ -47,8 +49,14 @@ class Job:
     """Whether files that exist are replaced."""
     times: bool = True
     """Whether outputs get the source's modification time; they always get its permissions."""
+    stored: bool = False
+    """Whether the source is no file but a name in a library."""
+    share: float = 1
+    """How much of all the work it is."""
     outputs: dict[Path, bytes] = field(default_factory=dict)
     """What was made and is to be stored, all of it or nothing."""
+    modified: int | None = None
+    """What the outputs get as their modification time, in nanoseconds since 1970."""
     result: dict[str, Any] = field(default_factory=dict)
     error: Exception | None = None
     warnings: list[MotionWarning] = field(default_factory=list)
@@ -98,7 +106,7 @@ def usage(message: str) -> NoReturn:
 
 
 def run(
-    jobs: Sequence[Job],
+    jobs: Iterable[Job],
     work: Callable[[Job], dict[str, Any]],
     *,
     threads: int = 1,
@@ -107,13 +115,15 @@ def run(
     total: Callable[[list[Job]], None] | None = None,
     failure_code: int = 1,
     debug: bool = False,
+    whole: float | None = None,
+    close: Callable[[], None] | None = None,
 ) -> None:
     """Work on all jobs, report each as it is done, and end with the exit code.
 
     Parameters
     ----------
     jobs
-        With their targets, where there are outputs.
+        With their targets, where there are outputs. They are asked for as they are needed.
     work
         Gives the facts of a job's result, and leaves what is to be stored in ``outputs``.
     threads
@@ -126,6 +136,10 @@ def run(
         Of inputs that are bad.
     debug
         Whether errors come with their tracebacks.
+    whole
+        The sum of all shares, where the number of jobs is not known before.
+    close
+        What to do before a signal ends the process.
 
     """
     report = Report(json=json, show=show, failure_code=failure_code, debug=debug)
@@ -143,17 +157,27 @@ def run(
             job.outputs.clear()
             done.put(job)
 
+    number = len(jobs) if isinstance(jobs, Sequence) else None
+    if whole is None:
+        whole = number
     pool = ThreadPoolExecutor(threads)
+    coming, begun, more = iter(jobs), 0, True
     try:
-        with collecting(), _signals(done.put), _bar(len(jobs)) as advance:
-            for job in jobs:
-                pool.submit(one, job)
-            for _ in jobs:
+        with collecting(), _signals(done.put), _bar(whole, number) as advance:
+            while True:
+                while more and begun - report.count < threads + _AHEAD:
+                    job = next(coming, None)
+                    more = job is not None
+                    if job is not None:
+                        pool.submit(one, job)
+                        begun += 1
+                if begun == report.count:
+                    break
                 told = done.get()
                 if isinstance(told, int):
-                    _stop(told, jobs, done, storing, report)
+                    _stop(told, number, done, storing, report, close)
                 report.add(told)
-                advance()
+                advance(told.share)
     finally:
         pool.shutdown(cancel_futures=True)
     report.end(total)
@@ -186,7 +210,8 @@ def _worked(job: Job, work: Callable[[Job], dict[str, Any]], storing: _Storing) 
         assert job.target is not None
         more = [job.target.with_suffix(ending) for ending in job.beside]
         check_targets([job.target, *more], force=job.force)
-        like = None if job.source in (STREAM, job.target) else job.source.stat()
+        no_file = job.stored or job.source in (STREAM, job.target)
+        like = None if no_file else job.source.stat()
     result = work(job)
     if not files:
         for data in job.outputs.values():
@@ -196,7 +221,7 @@ def _worked(job: Job, work: Callable[[Job], dict[str, Any]], storing: _Storing) 
             path.parent.mkdir(parents=True, exist_ok=True)
         if not any(is_stream(path) for path in job.outputs):  # a FIFO may never be read
             storing.begin(job)
-        write_all(job.outputs, force=job.force, like=like, times=job.times)
+        write_all(job.outputs, force=job.force, like=like, times=job.times, modified=job.modified)
     return result
 
 
@@ -213,10 +238,11 @@ def _to_stdout(data: bytes) -> None:
 
 def _stop(
     signal_number: int,
-    jobs: Sequence[Job],
+    jobs: int | None,
     done: "queue.SimpleQueue[Job | int]",
     storing: _Storing,
     report: Report,
+    close: Callable[[], None] | None,
 ) -> NoReturn:
     """Let what is being stored be stored, report it, and end whatever else is running."""
     waited = storing.close() - report.reported
@@ -226,7 +252,9 @@ def _stop(
             break
         report.add(job)
         waited.discard(job)
-    report.interrupt(len(jobs))
+    if close:
+        close()
+    report.interrupt(jobs)
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(128 + signal_number)
@@ -248,15 +276,15 @@ def _signals(put: Callable[[int], None]) -> Iterator[None]:
 
 
 @contextmanager
-def _bar(jobs: int) -> Iterator[Callable[[], None]]:
+def _bar(whole: float | None, jobs: int | None) -> Iterator[Callable[[float], None]]:
     """Show progress on a terminal, unless it is there that the results appear."""
     if jobs == 1 or not sys.stderr.isatty() or sys.stdout.isatty():
-        yield lambda: None
+        yield lambda _: None
         return
     from rich.console import Console
     from rich.progress import Progress
 
     console = Console(stderr=True)
     with Progress(console=console, transient=True, redirect_stdout=False) as bar:
-        task = bar.add_task("", total=jobs)
-        yield lambda: bar.advance(task)
+        task = bar.add_task("", total=whole)
+        yield lambda share: bar.advance(task, share)

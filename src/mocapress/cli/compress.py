@@ -109,7 +109,7 @@ def compress(
         text=to is Packed.JSON,
         reads=[asf, model],
     )
-    _say_what_is_left_out(inputs, (*endings, *_ENDINGS[Packed.MCZ], *JSON_SUFFIXES))
+    say_what_is_left_out(inputs, (*endings, *_ENDINGS[Packed.MCZ], *JSON_SUFFIXES))
 
     def work(job: "Job") -> dict[str, Any]:
         assert job.target is not None
@@ -188,7 +188,7 @@ def _notes(texts: list[str], to: Packed) -> dict[str, str]:
     return notes
 
 
-def _say_what_is_left_out(inputs: list[Path], known: tuple[str, ...]) -> None:
+def say_what_is_left_out(inputs: list[Path], known: tuple[str, ...]) -> None:
     """Count files in folders that are not compressed, so that nobody deletes them by mistake."""
     from os import walk
 

@@ -40,10 +40,11 @@ def info(
             return describe.describe_json(source.data)
         return describe.describe_file(source, asf_path=asf, strict=strict)
 
-    run(files, work, threads=jobs, json=json, show=_show, debug=debug)
+    run(files, work, threads=jobs, json=json, show=show, debug=debug)
 
 
-def _show(job: "Job") -> None:
+def show(job: "Job") -> None:
+    """Print what is known of a file as a table."""
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text  # names and notes are text, never markup

@@ -29,6 +29,11 @@ class Report:
         self.done: list[Job] = []
         self.failed: list[Job] = []
 
+    @property
+    def count(self) -> int:
+        """How many jobs are reported."""
+        return len(self.done) + len(self.failed)
+
     def add(self, job: "Job") -> None:
         """Report a job that is done or has failed."""
         if self.json:
@@ -60,11 +65,12 @@ class Report:
             parameters = all(isinstance(job.error, ParameterError) for job in self.failed)
             raise typer.Exit(2 if parameters else self.failure_code)
 
-    def interrupt(self, jobs: int) -> None:
+    def interrupt(self, jobs: int | None) -> None:
         """Say how far it came."""
         if self.json:
             self._close()
-        say(f"interrupted; {len(self.done)} of {jobs} files done")
+        of = "" if jobs is None else f"of {jobs} "
+        say(f"interrupted; {len(self.done)} {of}files done")
 
     def _close(self) -> None:
         print("]" if self.reported else "[]")

@@ -55,7 +55,7 @@ def write_chunk(chunk: CodedChunk) -> bytes:
     """Give the content of the section."""
     writer = Writer()
     entry = chunk.entry
-    writer.integer(_stream_and_flags(entry))
+    writer.integer(stream_and_flags(entry))
     writer.integer(entry.first)
     writer.integer(entry.frames)
     writer.data += chunk.digest.to_bytes(4, "little")
@@ -80,13 +80,12 @@ def read_chunk(content: bytes, begin: int, end: int) -> CodedChunk:
     head = reader.integer(_FLAGS * limits.STREAMS - 1)
     first, frames = reader.integer(_MOST_FRAMES), reader.integer(_MOST_FRAMES)
     digest = int.from_bytes(reader.raw(4), "little")
-    own = bool(head & _OWN_HEADER)
-    header = reader.bytes() if own else b""
-    dependent = bool(head & _NEEDS)
-    needs = tuple(reader.raw(_DIGEST) for _ in range(reader.count(_DIGEST) if dependent else 0))
+    entry = entry_of(head, first, frames, begin, end)
+    header = reader.bytes() if entry.own_header else b""
+    needed = reader.count(_DIGEST) if entry.dependent else 0
+    needs = tuple(reader.raw(_DIGEST) for _ in range(needed))
     if frames == 0:
         raise CorruptError("a chunk without frames", offset=begin)
-    entry = Entry(head // _FLAGS, first, frames, not head & _CONTINUES, own, dependent, begin, end)
     return CodedChunk(entry, digest, header, reader.raw(reader.left), needs)
 
 
@@ -94,7 +93,7 @@ def write_end(entries: Sequence[Entry]) -> bytes:
     """Give the content of the last section, for chunks in the order of the file."""
     writer = Writer()
     writer.integer(len(entries))
-    writer.runs([_stream_and_flags(entry) for entry in entries])
+    writer.runs([stream_and_flags(entry) for entry in entries])
     writer.runs([entry.frames for entry in entries])
     ends = chain([0], (entry.end for entry in entries))
     writer.runs([entry.begin - end for entry, end in zip(entries, ends, strict=False)])
@@ -132,24 +131,28 @@ def read_end(content: bytes, begin: int) -> list[Entry]:
             raise reader.fail("a chunk without frames, or outside the file")
         first = reached.get(stream, 0)
         reached[stream] = first + of_chunk
-        entries.append(
-            Entry(
-                stream,
-                first,
-                of_chunk,
-                not head & _CONTINUES,
-                bool(head & _OWN_HEADER),
-                bool(head & _NEEDS),
-                start,
-                place,
-            )
-        )
+        entries.append(entry_of(head, first, of_chunk, start, place))
     reader.raw(DISTANCE)
     reader.end()
     return entries
 
 
-def _stream_and_flags(entry: Entry) -> int:
+def entry_of(head: int, first: int, frames: int, begin: int, end: int) -> Entry:
+    """Make an entry; ``head`` is the first field of its chunk."""
+    return Entry(
+        head // _FLAGS,
+        first,
+        frames,
+        not head & _CONTINUES,
+        bool(head & _OWN_HEADER),
+        bool(head & _NEEDS),
+        begin,
+        end,
+    )
+
+
+def stream_and_flags(entry: Entry) -> int:
+    """Give the first field of a chunk."""
     return (
         _FLAGS * entry.stream
         + _CONTINUES * (not entry.restart)

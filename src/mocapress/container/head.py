@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from mocapress.container import limits
 from mocapress.container.columns import Bone, Columns, read_columns, write_columns
-from mocapress.container.packing import pack, unpack
+from mocapress.container.packing import pack, stored, unpack
 from mocapress.container.skeletons import read_skeleton, write_skeleton
 from mocapress.motion.clip import Column, FrameTime
 from mocapress.motion.skeleton import Skeleton
@@ -64,14 +64,29 @@ def write_head(head: Head) -> bytes:
     """Give the content of the section."""
     writer = Writer()
     write_skeleton(writer, head.skeleton)
-    writer.integer(len(head.streams))
-    for stream in head.streams:
-        description = Writer()
-        _write_stream(description, stream, head.skeleton)
-        writer.text(stream.name)
-        writer.text(stream.kind)
-        writer.bytes(bytes(description.data))
+    _write_streams(writer, head)
     return pack(bytes(writer.data))
+
+
+def write_parts(head: Head) -> tuple[bytes, bytes]:
+    """Give skeleton and streams of a head apart, each packed; a library keeps them so."""
+    skeleton, streams = Writer(), Writer()
+    write_skeleton(skeleton, head.skeleton)
+    _write_streams(streams, head)
+    return pack(bytes(skeleton.data)), pack(bytes(streams.data))
+
+
+def join_parts(skeleton: bytes | None, streams: bytes) -> bytes:
+    """Give the content of the section from what ``write_parts`` gave; None for no skeleton.
+
+    Raises
+    ------
+    CorruptError
+        When they cannot be unpacked.
+
+    """
+    record = b"\0" if skeleton is None else unpack(skeleton, "skeleton", limits.UNPACKED)
+    return stored(record + unpack(streams, "head", limits.UNPACKED))
 
 
 def read_head(content: bytes) -> Head:
@@ -96,6 +111,16 @@ def read_head(content: bytes) -> Head:
     if not streams or len({stream.name for stream in streams}) < len(streams):
         raise reader.fail("no streams, or two of one name")
     return Head(tuple(streams), skeleton)
+
+
+def _write_streams(writer: Writer, head: Head) -> None:
+    writer.integer(len(head.streams))
+    for stream in head.streams:
+        description = Writer()
+        _write_stream(description, stream, head.skeleton)
+        writer.text(stream.name)
+        writer.text(stream.kind)
+        writer.bytes(bytes(description.data))
 
 
 def _write_stream(writer: Writer, stream: StreamHead, skeleton: Skeleton | None) -> None:

@@ -1,6 +1,6 @@
 """The original file's facts and layout, and what belongs to it: docs/format.md, "File", "Notes"."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -68,8 +68,15 @@ def write_original(original: Original) -> bytes:
     writer.text(original.name)
     writer.integer(original.size)
     writer.data += original.digest
-    writer.integer(len(original.problems))
-    for problem in original.problems:
+    writer.data += write_problems(original.problems)
+    return bytes(writer.data) + original.packed
+
+
+def write_problems(problems: Sequence[Problem]) -> bytes:
+    """Give problems as the section has them."""
+    writer = Writer()
+    writer.integer(len(problems))
+    for problem in problems:
         writer.integer(_LOSES_MOTION * problem.loses_motion)
         writer.text(problem.name)
         writer.text(problem.what)
@@ -77,7 +84,19 @@ def write_original(original: Original) -> bytes:
         writer.integer(0 if problem.offset is None else problem.offset + 1)
         writer.text(problem.expected or "")
         writer.text(problem.found or "")
-    return bytes(writer.data) + original.packed
+    return bytes(writer.data)
+
+
+def read_problems(reader: Reader) -> tuple[Problem, ...]:
+    """Take problems.
+
+    Raises
+    ------
+    CorruptError
+        When there are none such.
+
+    """
+    return tuple(_read_problem(reader) for _ in range(reader.integer(limits.PROBLEMS)))
 
 
 def read_original(content: bytes, length: int) -> Original:
@@ -94,7 +113,7 @@ def read_original(content: bytes, length: int) -> Original:
     if size > limits.most_original(length):
         raise CorruptError(f"{size} bytes announced in a file of {length}")
     digest = reader.raw(32)
-    problems = tuple(_read_problem(reader) for _ in range(reader.integer(limits.PROBLEMS)))
+    problems = read_problems(reader)
     return Original(kind, name, size, digest, problems, reader.raw(reader.left))
 
 

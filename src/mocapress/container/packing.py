@@ -25,9 +25,18 @@ def pack(data: bytes, *, hard: bool = False) -> bytes:
             chain = _lzma_filter(len(data), text=text)
             candidates.append((_LZMA, lzma.compress(data, lzma.FORMAT_RAW, filters=[chain])))
     method, packed = min(candidates, key=lambda candidate: len(candidate[1]))
+    return _record(method, len(data), packed)
+
+
+def stored(data: bytes) -> bytes:
+    """Give what ``unpack`` takes without compressing anything."""
+    return _record(_STORED, len(data), data)
+
+
+def _record(method: int, size: int, packed: bytes) -> bytes:
     writer = Writer()
     writer.integer(method)
-    writer.integer(len(data))
+    writer.integer(size)
     return bytes(writer.data) + packed
 
 

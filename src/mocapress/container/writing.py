@@ -47,6 +47,12 @@ class MczWriter:
         self._section(Tag.CHUNK, write_chunk(chunk))
         self._entries.append(chunk.entry._replace(begin=begin, end=self.length))
 
+    def stored_chunk(self, entry: Entry, stored: bytes) -> None:
+        """Append the section of a chunk as another file has it."""
+        begin = self.length
+        self._put(stored)
+        self._entries.append(entry._replace(begin=begin, end=self.length))
+
     def end(self) -> None:
         """Close the file."""
         self._section(Tag.END, write_end(self._entries))

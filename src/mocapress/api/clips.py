@@ -1,0 +1,83 @@
+"""From clips to compressed files."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mocapress import codecs
+from mocapress.api.encoding import coded, stored_skeleton
+from mocapress.api.opening import Opened
+from mocapress.codecs import DEFAULT_CODEC, Codec, Model
+from mocapress.codecs.loss import Loss, checked_loss
+from mocapress.container import Head, MczWriter, is_storable_time
+from mocapress.errors import UnsupportedError, VerificationError
+from mocapress.motion import Clip
+from mocapress.source import Source
+
+
+@dataclass(frozen=True, slots=True)
+class Compressed:
+    """What compressing made."""
+
+    blob: bytes
+    """The ``.mcz`` file."""
+    warning: str | None
+    """Why the numbers, or a part of them, were not compressed as motion."""
+    loss: Loss | None = None
+    """What a lossy codec lost, measured from what it decodes to; None where nothing is lost."""
+
+
+def compress_clip(
+    clip: Clip,
+    codec: str | Codec = DEFAULT_CODEC,
+    *,
+    model: Model | None = None,
+    notes: Mapping[str, str] | None = None,
+) -> Compressed:
+    """Compress a clip; see ``compress``. The model is for its first stream."""
+    made = checked_codec(codec, model)
+    skeleton = stored_skeleton(clip)
+    heads, chunks = [], []
+    for index, (name, stream) in enumerate(clip.streams.items()):
+        if not is_storable_time(stream.frame_time):
+            raise UnsupportedError("frame time", found=str(stream.frame_time))
+        alone, own = Clip({name: stream}, clip.skeleton), model if index == 0 else None
+        head, of_stream = coded(
+            alone, name, index, made, made.encode(stream, skeleton=clip.skeleton, model=own), own
+        )
+        heads.append(head)
+        chunks += of_stream
+    facts = {**({"name": clip.name} if clip.name else {}), **clip.metadata}
+    said = {key: readable(fact) for key, fact in facts.items()} | dict(notes or {})
+    parts: list[bytes] = []
+    writer = MczWriter(parts.append)
+    writer.head(Head(tuple(heads), skeleton))
+    if said:
+        writer.notes(said)
+    for chunk in chunks:
+        writer.chunk(chunk)
+    writer.end()
+    blob = b"".join(parts)
+    opened = Opened(Source(blob), [model] if model else [])
+    loss = None
+    for index, (name, stream) in enumerate(clip.streams.items()):
+        rows = opened.rows(index).values
+        if not made.lossless:
+            alone = Clip({name: stream})
+            found = checked_loss(made, alone, rows)
+            loss = loss or found
+        elif rows.tobytes() != stream.values.tobytes():
+            raise VerificationError(f"codec {made.id} does not give back stream {name!r}")
+    return Compressed(blob, None, loss)
+
+
+def checked_codec(codec: str | Codec, model: Model | None) -> Codec:
+    """Make a codec of its text; see that the model is for it."""
+    made = codecs.codec(codec) if isinstance(codec, str) else codec
+    if model is not None:
+        codecs.learner(made, model)
+    return made
+
+
+def readable(name: str) -> str:
+    """Replace what is no UTF-8 in the name of a file."""
+    return name.encode(errors="surrogateescape").decode(errors="replace")

@@ -1,0 +1,51 @@
+"""``library export``."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mocapress.cli.library.opening import File, Label, Patterns, chosen, jobs_of, opened
+from mocapress.cli.options import Debug, Force, Jobs, Json
+
+if TYPE_CHECKING:
+    from mocapress.cli.batch import Job
+
+
+def export(
+    file: File,
+    patterns: Patterns = None,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="Folder for the files.", metavar="FOLDER")
+    ] = Path(),
+    label: Label = None,
+    jobs: Jobs = 1,
+    force: Force = False,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Write clips as .mcz files, with their skeletons; nothing is coded again but shared frames."""
+    from mocapress.cli.batch import run
+    from mocapress.library import names
+
+    with opened(file, debug=debug) as library:
+        files = jobs_of(chosen(library, patterns, label))
+        for job in files:
+            job.target, job.force = output / f"{names.checked(str(job.source))}.mcz", force
+
+        def work(job: "Job") -> dict[str, Any]:
+            assert job.target is not None
+            clip = library[str(job.source)]
+            job.modified = clip.modified
+            job.outputs[job.target] = library.read_mcz(clip)
+            return {"output": str(job.target), "bytes": len(job.outputs[job.target])}
+
+        run(
+            files,
+            work,
+            threads=jobs,
+            json=json,
+            show=lambda job: print(f"{job.target}: {job.result['bytes']} bytes"),
+            total=lambda done: print(f"{len(done)} files"),
+            debug=debug,
+        )

@@ -1,0 +1,64 @@
+"""``library extract``."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mocapress.cli.library.opening import File, Label, Patterns, chosen, jobs_of, opened
+from mocapress.cli.options import Debug, Force, Jobs, Json, Models
+
+if TYPE_CHECKING:
+    from mocapress.cli.batch import Job
+
+
+def extract(
+    file: File,
+    patterns: Patterns = None,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="Folder for the files.", metavar="FOLDER")
+    ] = Path(),
+    label: Label = None,
+    models: Models = None,
+    salvage: Annotated[
+        bool,
+        typer.Option(
+            "--salvage", help="Take what is left of a damaged library, and say what is lost."
+        ),
+    ] = False,
+    jobs: Jobs = 1,
+    force: Force = False,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Restore files with their names, folders and times, skeletons (ASF) included."""
+    from mocapress.cli.batch import run
+    from mocapress.cli.models import open_models
+    from mocapress.library import extracting, names
+
+    with opened(file, debug=debug, models=open_models(models or [])) as library:
+        if salvage and not patterns and label is None:
+            items = extracting.left(library)
+        else:
+            items = extracting.items(library, chosen(library, patterns, label), every=not patterns)
+        files = jobs_of(items)
+        of_job = dict(zip(files, items, strict=True))
+        for job, item in of_job.items():
+            job.target, job.force = output / names.checked(item.name), force
+
+        def work(job: "Job") -> dict[str, Any]:
+            assert job.target is not None
+            item = of_job[job]
+            job.modified = item.modified
+            job.outputs[job.target] = item.read(salvage)
+            return {"output": str(job.target), "bytes": len(job.outputs[job.target])}
+
+        run(
+            files,
+            work,
+            threads=jobs,
+            json=json,
+            show=lambda job: print(f"{job.target}: {job.result['bytes']} bytes"),
+            total=lambda done: print(f"{len(done)} files"),
+            debug=debug,
+        )

@@ -1,0 +1,69 @@
+"""What the commands of a library share: its arguments, opening it, choosing clips."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from mocapress.cli.batch import Job
+    from mocapress.library import Library, StoredClip
+    from mocapress.library.extracting import Item
+    from mocapress.models import Place
+
+File = Annotated[
+    Path, typer.Argument(metavar="LIB", help="The library, a .mocapdb.", show_default=False)
+]
+Patterns = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="[CLIPS]...",
+        help="Names of clips, folders of them, or globs such as 'walks/*'; all without any.",
+        show_default=False,
+    ),
+]
+Label = Annotated[
+    str | None, typer.Option("--label", help="Only clips that have this label.", metavar="LABEL")
+]
+
+
+@contextmanager
+def opened(
+    path: Path, mode: str = "r", *, debug: bool = False, models: "Sequence[Place]" = ()
+) -> "Iterator[Library]":
+    """Open a library; end with a line where that, or what is done with it, fails."""
+    from mocapress.cli.report import message, say
+    from mocapress.errors import MocapressError
+    from mocapress.library import open_library
+
+    try:
+        with open_library(path, mode, models=models) as library:
+            yield library
+    except (MocapressError, OSError, MemoryError) as error:
+        if debug:
+            raise
+        say(message(error, str(path)))
+        raise typer.Exit(1) from error
+
+
+def chosen(
+    library: "Library", patterns: Sequence[str] | None, label: str | None = None
+) -> "list[StoredClip]":
+    """Give the clips that are asked for; end where a pattern fits none."""
+    from mocapress.cli.report import say
+
+    found = library.clips(patterns or (), label=label)
+    for pattern in patterns or ():
+        if not library.clips(pattern):
+            say(f"{library.path}: no such clip: {pattern}")
+            raise typer.Exit(1)
+    return found
+
+
+def jobs_of(items: "Sequence[StoredClip | Item]") -> "list[Job]":
+    """Make a job of each clip or file of a library."""
+    from mocapress.cli.batch import Job
+
+    return [Job(Path(item.name), Path(), stored=True, share=item.size or 1) for item in items]

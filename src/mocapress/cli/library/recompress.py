@@ -1,0 +1,55 @@
+"""``library recompress``."""
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mocapress.cli.library.opening import File, Patterns, chosen, jobs_of, opened
+from mocapress.cli.options import Debug, Jobs, Json, Models
+
+if TYPE_CHECKING:
+    from mocapress.cli.batch import Job
+
+
+def recompress(
+    file: File,
+    patterns: Patterns = None,
+    codec: Annotated[
+        str, typer.Option("--codec", help="A lossless codec, e.g. exact:level=9.")
+    ] = "exact",
+    level: Annotated[
+        int | None, typer.Option("--level", min=1, max=9, help="1 (fast) to 9 (small).")
+    ] = None,
+    models: Models = None,
+    jobs: Jobs = 1,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Code clips anew, each in a transaction; their files and numbers stay the same."""
+    from mocapress.cli.batch import run
+    from mocapress.cli.library.codec import chosen_codec
+    from mocapress.cli.models import open_models
+
+    made = chosen_codec(codec, level)
+    with opened(file, "a", debug=debug, models=open_models(models or [])) as library:
+
+        def work(job: "Job") -> dict[str, Any]:
+            before, after = library.recompress(str(job.source), made)
+            return {"bytes_before": before, "bytes_after": after}
+
+        run(
+            jobs_of(chosen(library, patterns)),
+            work,
+            threads=jobs,
+            json=json,
+            show=lambda job: print(f"{job.source}: {_sizes([job])}"),
+            total=lambda done: print(f"{len(done)} clips: {_sizes(done)}"),
+            debug=debug,
+            close=library.close,
+        )
+
+
+def _sizes(jobs: "list[Job]") -> str:
+    before = sum(job.result["bytes_before"] for job in jobs)
+    after = sum(job.result["bytes_after"] for job in jobs)
+    return f"{before} -> {after} bytes"

@@ -1,0 +1,42 @@
+"""``library verify``."""
+
+from typing import TYPE_CHECKING, Any
+
+from mocapress.cli.library.opening import File, Patterns, chosen, jobs_of, opened
+from mocapress.cli.options import Debug, Jobs, Json, Models
+
+if TYPE_CHECKING:
+    from mocapress.cli.batch import Job
+
+
+def verify(
+    file: File,
+    patterns: Patterns = None,
+    models: Models = None,
+    jobs: Jobs = 1,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Decode clips and check all their checksums; exit code 3 if one is damaged."""
+    from mocapress.cli.batch import run
+    from mocapress.cli.models import open_models
+    from mocapress.errors import CorruptError
+
+    with opened(file, debug=debug, models=open_models(models or [])) as library:
+
+        def work(job: "Job") -> dict[str, Any]:
+            faults = library.verify([str(job.source)])
+            if faults:
+                raise CorruptError("; ".join(what for _, what in faults), file=str(job.source))
+            return {"ok": True}
+
+        run(
+            jobs_of(chosen(library, patterns)),
+            work,
+            threads=jobs,
+            json=json,
+            show=lambda job: print(f"{job.source}: ok"),
+            total=lambda done: print(f"{len(done)} clips are sound"),
+            failure_code=3,
+            debug=debug,
+        )

@@ -1,0 +1,170 @@
+"""Clips of a library as its users see them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING, Any
+
+from mocapress.errors import ParameterError
+from mocapress.library import names
+from mocapress.library.rows import Connection
+from mocapress.motion import Clip, Stream
+
+if TYPE_CHECKING:
+    from mocapress.library.library import Library
+
+_FACTS = (
+    "id, clips.name, format, frames, channels, frame_time, size, sha256, modified, codec, "
+    "(SELECT name FROM skeletons WHERE skeletons.id = clips.skeleton), "
+    "(SELECT group_concat(label, char(0)) FROM labels WHERE labels.clip = clips.id)"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class StoredClip:
+    """A clip in a library: facts about it now, its numbers when they are asked for."""
+
+    library: "Library" = field(repr=False, compare=False)
+    id: int
+    """Stays the clip's as long as it is there, and is never another's."""
+    name: str
+    format: str
+    """Id of the original's format; empty where it is no motion, or there is no original."""
+    frames: int
+    channels: int
+    frame_time: float | None
+    """Seconds, rounded to a double; None where the source does not say."""
+    size: int | None
+    """Bytes of the original; None where there is none."""
+    sha256: str | None
+    modified: int | None
+    """When the original was last changed, in nanoseconds since 1970."""
+    codec: str | None
+    skeleton: str | None
+    """Name of the skeleton."""
+    labels: tuple[str, ...]
+
+    @property
+    def duration(self) -> float | None:
+        """Seconds; None where the frame time is not known."""
+        return None if self.frame_time is None else self.frames * self.frame_time
+
+    @property
+    def notes(self) -> dict[str, str]:
+        """What is said about the clip."""
+        with self.library.db.reading() as connection:
+            return dict(
+                connection.execute(
+                    "SELECT key, value FROM notes WHERE clip = ? ORDER BY key", [self.id]
+                )
+            )
+
+    def load(self, frames: slice | None = None, *, columns: Sequence[str] | None = None) -> Clip:
+        """Give the clip, or some of it; see ``Library.load``."""
+        return self.library.load(self, frames, columns=columns)
+
+    def read_bytes(self) -> bytes:
+        """Give the original file; see ``Library.read_bytes``."""
+        return self.library.read_bytes(self)
+
+
+def select(
+    library: "Library",
+    connection: Connection,
+    patterns: Sequence[str] = (),
+    *,
+    label: str | None = None,
+    min_duration: float | None = None,
+    skeleton: str | None = None,
+    order: str = "name",
+) -> list[StoredClip]:
+    """Give clips that fulfil all conditions; see ``Library.clips``."""
+    where, values = names.condition(patterns)
+    conditions = [f"({where})"]
+    if label is not None:
+        conditions.append("id IN (SELECT clip FROM labels WHERE label = ?)")
+        values.append(label)
+    if min_duration is not None:
+        conditions.append("frames * frame_time >= ?")
+        values.append(min_duration)
+    if skeleton is not None:
+        conditions.append("skeleton IN (SELECT id FROM skeletons WHERE name GLOB ?)")
+        values.append(skeleton)
+    rows = connection.execute(
+        f"SELECT {_FACTS} FROM clips WHERE {' AND '.join(conditions)} ORDER BY {order}",  # noqa: S608
+        values,
+    )
+    return [_stored(library, row) for row in rows]
+
+
+def by_id(library: "Library", connection: Connection, clip: int) -> StoredClip:
+    """Give the clip of an id.
+
+    Raises
+    ------
+    ParameterError
+        When there is none.
+
+    """
+    row = connection.execute(
+        f"SELECT {_FACTS} FROM clips WHERE id = ?",  # noqa: S608
+        [clip],
+    ).fetchone()
+    if row is None:
+        raise ParameterError("no such clip", file=str(library.path), found=f"id {clip}")
+    return _stored(library, row)
+
+
+def _stored(library: "Library", row: Sequence[Any]) -> StoredClip:
+    number, name, kind, frames, channels, time, size, sha256, modified, codec, skeleton, labels = (
+        row
+    )
+    return StoredClip(
+        library,
+        number,
+        name,
+        kind or "",
+        frames,
+        channels,
+        time,
+        size,
+        None if sha256 is None else sha256.hex(),
+        modified,
+        codec,
+        skeleton,
+        tuple(sorted(labels.split("\0"))) if labels else (),
+    )
+
+
+def with_columns(clip: Clip, wanted: Sequence[str]) -> Clip:
+    """Give a clip of only those columns of its first stream that are named, in this order.
+
+    Parameters
+    ----------
+    clip
+        Any clip.
+    wanted
+        Names of columns, such as ``lfemur.rx``, or globs, such as ``lfemur.*``.
+
+    Raises
+    ------
+    ParameterError
+        When a name is none of the clip's.
+
+    """
+    places: list[int] = []
+    for pattern in wanted:
+        exact = [i for i, column in enumerate(clip.columns) if column.name == pattern]
+        found = exact or [
+            i for i, column in enumerate(clip.columns) if fnmatchcase(column.name, pattern)
+        ]
+        if not found:
+            some = ", ".join(column.name for column in clip.columns[:3])
+            raise ParameterError(
+                "no such column", expected=f"a name or glob, e.g. {some}", found=repr(pattern)
+            )
+        places += [place for place in found if place not in places]
+    columns = tuple(clip.columns[place] for place in places)
+    name = next(iter(clip.streams))
+    stream = Stream(clip.values[:, places], columns, clip.frame_time)
+    return Clip({name: stream}, clip.skeleton, clip.name, clip.metadata)

@@ -1,0 +1,183 @@
+"""The commands of a library."""
+
+import io
+import json
+import os
+import shutil
+import signal
+import tarfile
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from running import mocapress, process, started
+from takes import amc_of
+
+import mocapress as mp
+
+AMC, ASF, BVH = "cmu_01_01.amc", "cmu_01_01.asf", "freebvh.bvh"
+
+
+@pytest.fixture
+def filled(samples: Path, tmp_path: Path) -> Path:
+    path = tmp_path / "library.mocapdb"
+    with mp.open_library(path, "a") as library:
+        library.add(samples / AMC, "cmu/01.amc", codec="exact:level=1")
+        library.add(samples / BVH, "other/free.bvh")
+    return path
+
+
+def test_create_makes_a_library_once(tmp_path: Path) -> None:
+    path = tmp_path / "lib.mocapdb"
+    assert mocapress("library", "create", path).exit_code == 0
+    again = mocapress("library", "create", path)
+    assert again.exit_code == 1
+    assert "file exists" in again.output
+    assert mocapress("library", "list", path).output == ""
+
+
+def test_list_info_cat_label_remove(filled: Path, samples: Path) -> None:
+    assert mocapress("library", "list", filled).output == "cmu/01.amc\nother/free.bvh\n"
+    assert mocapress("library", "list", filled, "other").output == "other/free.bvh\n"
+    assert mocapress("library", "list", filled, "cmu", "-l").output == (
+        "cmu/01.amc\tamc\t2751\t-\tVICON\t-\n"
+    )
+    rows = json.loads(mocapress("library", "list", filled, "--json").stdout)
+    assert [row["frames"] for row in rows] == [2751, 69]
+    (facts,) = json.loads(mocapress("library", "info", filled, "--json").stdout)
+    assert (facts["clips"], facts["frames"], facts["companions"]) == (2, 2820, 1)
+    (facts,) = json.loads(mocapress("library", "info", filled, "*.bvh", "--json").stdout)
+    assert (facts["file"], facts["codec"]) == ("other/free.bvh", "exact")
+    assert process("library", "cat", filled, "cmu/01.amc").stdout == (samples / AMC).read_bytes()
+    assert mocapress("library", "label", filled, "cmu", "--add", "walk").exit_code == 0
+    assert mocapress("library", "label", filled).output == "walk\t1\n"
+    assert mocapress("library", "list", filled, "--label", "walk").output == "cmu/01.amc\n"
+    assert mocapress("library", "label", filled, "cmu", "--remove", "walk").exit_code == 0
+    assert mocapress("library", "label", filled).output == ""
+    for command in ("list", "extract", "verify", "remove", "cat", "info", "export", "recompress"):
+        done = mocapress("library", command, filled, "nothing")
+        assert done.exit_code == 1, command
+        assert "no such clip" in done.output
+    assert mocapress("library", "recompress", filled, "--level", "6").exit_code == 0
+    assert mocapress("library", "verify", filled, "-j", "2").exit_code == 0
+    assert mocapress("library", "remove", filled, "cmu").output == "cmu/01.amc: removed\n"
+    assert mocapress("library", "list", filled).output == "other/free.bvh\n"
+    assert mocapress("library", "check", filled).output == f"{filled}: 1 clips, sound\n"
+    assert not Path(f"{filled}-wal").exists()
+
+
+def test_export_and_import_code_nothing_again(filled: Path, tmp_path: Path) -> None:
+    out, second = tmp_path / "out", tmp_path / "second.mocapdb"
+    assert mocapress("library", "export", filled, "-o", out).exit_code == 0
+    assert mocapress("verify", out).exit_code == 0
+    assert mocapress("library", "import", second, out).exit_code == 0
+    assert mocapress("library", "export", second, "-o", tmp_path / "again").exit_code == 0
+    for path in out.rglob("*.mcz"):
+        assert (tmp_path / "again" / path.relative_to(out)).read_bytes() == path.read_bytes()
+    again = mocapress("library", "import", second, out)
+    assert "2 unchanged" in again.output
+    (out / "no.mcz").write_bytes(b"no mcz")
+    assert mocapress("library", "import", second, out).exit_code == 1
+
+
+def test_extracting_overwrites_nothing_unasked(filled: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    mocapress("library", "extract", filled, "-o", out)
+    (out / "cmu" / "01.amc").write_bytes(b"mine")
+    again = mocapress("library", "extract", filled, "cmu/01.amc", "-o", out)
+    assert again.exit_code == 1
+    assert "file exists" in again.output
+    assert (out / "cmu" / "01.amc").read_bytes() == b"mine"
+    assert mocapress("library", "extract", filled, "-o", out, "--force").exit_code == 0
+
+
+def archive(path: Path, members: list[tuple[str, bytes]], mode: str) -> None:
+    kind: Any = f"w:{mode}"
+    with tarfile.open(path, kind) as made:
+        for name, data in members:
+            entry = tarfile.TarInfo(name)
+            entry.size, entry.mtime = len(data), 1_234_567_890
+            made.addfile(entry, io.BytesIO(data))
+
+
+@pytest.mark.parametrize("mode", ["", "gz", "bz2", "xz"])
+def test_archives_are_read_as_streams(samples: Path, tmp_path: Path, mode: str) -> None:
+    files = {name: (samples / name).read_bytes() for name in (AMC, ASF, BVH)}
+    # The skeleton comes behind the clip that needs it.
+    members = [
+        ("set/01/a.amc", files[AMC]),
+        ("./set/read.me", b"no motion"),
+        ("set/01/only.asf", files[ASF]),
+        ("./set/b.bvh", files[BVH]),
+    ]
+    tar, path = tmp_path / f"set.tar{mode and '.'}{mode}", tmp_path / "lib.mocapdb"
+    archive(tar, members, mode)
+    done = mocapress("library", "add", path, tar, "-j", "2", "--into", "big")
+    assert done.exit_code == 0, done.output
+    with mp.open_library(path) as library:
+        assert [clip.name for clip in library] == ["big/set/01/a.amc", "big/set/b.bvh"]
+        assert library.read_bytes("big/set/01/a.amc") == files[AMC]
+        assert library.load("big/set/01/a.amc", slice(1)).skeleton is not None
+        assert not library.verify()
+    assert mocapress("library", "extract", path, "-o", tmp_path / "out").exit_code == 0
+    skeleton = tmp_path / "out" / "big" / "set" / "01" / "only.asf"
+    assert skeleton.read_bytes() == files[ASF]
+    assert skeleton.stat().st_mtime == 1_234_567_890
+    again = process("library", "add", path, "-", "--into", "big", data=tar.read_bytes())
+    assert again.returncode == 0
+    assert b"replaced" not in again.stdout
+
+
+def test_a_broken_archive_keeps_what_came_before(samples: Path, tmp_path: Path) -> None:
+    tar, path = tmp_path / "set.tgz", tmp_path / "lib.mocapdb"
+    members = [("a.bvh", (samples / BVH).read_bytes()), ("b.bvh", os.urandom(200_000))]
+    archive(tar, members, "gz")
+    tar.write_bytes(tar.read_bytes()[:-100_000])
+    done = mocapress("library", "add", path, tar)
+    assert done.exit_code == 1
+    assert "cannot be read to its end" in done.output
+    assert mocapress("library", "list", path).output == "a.bvh\n"
+
+
+def test_members_lead_nowhere_else(samples: Path, tmp_path: Path) -> None:
+    tar, path = tmp_path / "set.tar", tmp_path / "lib.mocapdb"
+    archive(tar, [("../a.bvh", b"1"), ("/b.bvh", b"2"), ("c.bvh", b"3")], "")
+    done = mocapress("library", "add", path, tar)
+    assert done.exit_code == 2
+    assert done.output.count("not a name for a clip") == 2
+    assert mocapress("library", "list", path).output == "c.bvh\n"
+
+
+def test_ctrl_c_keeps_what_is_done(tmp_path: Path, take: tuple[bytes, list[bytes]]) -> None:
+    header, rows = take
+    (tmp_path / "clips").mkdir()
+    for i in range(60):
+        piece = amc_of(header, [row.replace(b"1", b"%d" % (i % 10)) for row in rows[: 200 + i]])
+        (tmp_path / "clips" / f"{i:02}.amc").write_bytes(piece)
+    path = tmp_path / "lib.mocapdb"
+    running = started("library", "add", path, tmp_path / "clips", "--codec", "exact:level=9")
+    assert running.stdout is not None
+    first = running.stdout.readline()
+    running.send_signal(signal.SIGINT)
+    out, err = running.communicate()
+    assert running.returncode == 130
+    done = [first, *out.splitlines()]
+    assert f"interrupted; {len(done)} of 60 files done" in err.decode()
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["clips", "lib.mocapdb"]
+    with mp.open_library(path) as library:
+        assert len(done) <= len(library) < 60
+        assert not library.verify()
+    assert mocapress("library", "add", path, tmp_path / "clips", "-j", "2").exit_code == 0
+    with mp.open_library(path) as library:
+        assert len(library) == 60
+        assert not library.verify()
+
+
+def test_progress_needs_no_terminal(filled: Path, samples: Path, tmp_path: Path) -> None:
+    shutil.copy(samples / BVH, tmp_path / "x.bvh")
+    done = process("library", "add", filled, tmp_path / "x.bvh", "--json")
+    (row,) = json.loads(done.stdout)
+    assert (row["state"], row["frames"], row["frames_shared"]) == ("added", 69, 69)
+    assert done.stderr == b""
+    assert time.time() > 0
