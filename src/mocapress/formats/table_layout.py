@@ -13,12 +13,13 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapress import _core
 from mocapress.errors import CorruptError, FormatError
 from mocapress.formats.number_formats import (
     SHORTEST,
-    detect,
     printed,
     read_format,
+    unpacked,
     write_format,
 )
 from mocapress.formats.rows import read_rows
@@ -311,16 +312,7 @@ def _columns(of_columns: list[Cells]) -> tuple[tuple[TableColumn, ...], list[Val
             ]
             for i in numeric
         ]
-        values, statistics = _parsed(stripped)
-        sample = np.unique(np.linspace(0, len(values) - 1, _SAMPLE).astype(int)).tolist()
-        texts = [
-            [
-                None if missing[i][row] else own[row]
-                for i, own in zip(numeric, stripped, strict=True)
-            ]
-            for row in sample
-        ]
-        formats = detect(statistics, values[sample], texts)
+        values, formats = _parsed(stripped, [missing[i] for i in numeric])
         for place, i in enumerate(numeric):
             numbers = values[:, place].copy()
             numbers[missing[i]] = np.nan
@@ -347,14 +339,29 @@ def _column_of_texts(cells: Cells) -> TableColumn | None:
     return TableColumn(TEXTS, text=b"\n".join(cells))
 
 
-def _parsed(columns: list[Cells]) -> tuple[Values, NDArray[np.uint8]]:
-    """Give the numbers of cells, (F, C), and how they are written; of other cells, 0."""
+def _parsed(
+    columns: list[Cells], missing: list[list[bool]]
+) -> tuple[Values, tuple[NumberFormat, ...]]:
+    """Give the numbers of cells, (F, C), and their formats; of other cells, 0."""
     bare = [[cell if _NUMBER.match(cell) else b"0" for cell in cells] for cells in columns]
-    text = b"\n".join(b" ".join(row) for row in zip(*bare, strict=True)) + b"\n"
+    rows = list(zip(*bare, strict=True))
+    lines = [b" ".join(row) for row in rows]
+    text = b"\n".join(lines) + b"\n"
     body = read_rows(text, 0, len(columns))
-    if len(body.values) != len(columns[0]):
+    if len(body.values) != len(rows):
         raise FormatError("numbers that cannot be read")
-    return body.values, body.statistics
+    begins = np.cumsum([0, *(len(line) + 1 for line in lines)])
+    sample = np.unique(np.linspace(0, len(rows) - 1, _SAMPLE).astype(np.int64))
+    places = np.full((len(sample), len(columns), 2), -1, np.int64)
+    for found, row in zip(places, sample.tolist(), strict=True):
+        ends = begins[row] + np.cumsum([len(cell) + 1 for cell in rows[row]]) - 1
+        found[:, 0] = ends - [len(cell) for cell in rows[row]]
+        found[:, 1] = ends
+        found[[gone[row] for gone in missing]] = -1
+    values = body.values
+    return values, unpacked(
+        _core.detect_formats(text, body.statistics, np.ascontiguousarray(values[sample]), places)
+    )
 
 
 def _column_of_numbers(
