@@ -7,7 +7,7 @@
 namespace mocapress {
 
 RowStop read_numbers(std::string_view text, std::uint64_t begin, bool free, Row& row) {
-  Scanner scanner{text, begin};
+  Scanner scanner{text, static_cast<std::size_t>(begin)};
   scanner.skip_blanks();
   if (scanner.ended()) return {RowEnd::end_of_data, begin, scanner.at};
   for (std::size_t c = 0; c < row.values.size(); ++c) {
@@ -26,7 +26,7 @@ RowStop read_numbers(std::string_view text, std::uint64_t begin, bool free, Row&
 Body read_rows(std::string_view text, std::uint64_t begin, std::size_t columns) {
   Body body(columns);
   Row row(columns);
-  Scanner scanner{text, begin};
+  Scanner scanner{text, static_cast<std::size_t>(begin)};
   scanner.skip_empty_lines();
   while (columns > 0) {
     const RowStop stop = read_numbers(text, scanner.at, false, row);
