@@ -22,7 +22,9 @@ from mocapress import api
 from mocapress.source import Source
 from mocapress.storage import write_whole
 
-LIST = [sys.executable, "-c", "from mocapress.cli import main; main()", "library", "list"]
+COMMAND = [sys.executable, "-c", "from mocapress.cli import main; main()"]
+
+SUFFIXES = (".amc", ".bvh", ".asf")
 
 
 def main() -> None:
@@ -32,7 +34,7 @@ def main() -> None:
     parser.add_argument("--clips", type=int, default=10_000, help="of the large library")
     parser.add_argument("--no-tar", action="store_true", help="do not run tar with xz and zstd")
     options = parser.parse_args()
-    files = [p for p in sorted(options.folder.rglob("*")) if p.suffix.lower() in (".amc", ".bvh")]
+    files = [p for p in sorted(options.folder.rglob("*")) if p.suffix.lower() in SUFFIXES]
     with tempfile.TemporaryDirectory(prefix="library-") as place:
         packed = add(files, options.folder, Path(place))
         if not options.no_tar:
@@ -52,7 +54,11 @@ def add(files: list[Path], base: Path, place: Path) -> dict[Path, Path]:
                 write_whole(target, api.compress_source(Source(path)).blob)
 
             def store(path: Path = path) -> None:
-                library.add(path, str(path.relative_to(base)))
+                name = str(path.relative_to(base))
+                if path.suffix.lower() == ".asf":
+                    library.add_companion(Source(path), name)
+                else:
+                    library.add(path, name)
 
             turns = [("compress", compress), ("add", store)]
             for name, work in turns if number % 2 else reversed(turns):
@@ -60,7 +66,8 @@ def add(files: list[Path], base: Path, place: Path) -> dict[Path, Path]:
             packed[path] = target
     small = sum(path.stat().st_size for path in packed.values())
     size = (place / "all.mocapdb").stat().st_size
-    most = 1.01 * small + 256 * len(files)
+    clips = sum(path.suffix.lower() != ".asf" for path in files)
+    most = 1.01 * small + 256 * clips
     print(f"{len(files)} files, {raw} bytes")
     print(f"  .mcz files      {small:12} bytes")
     print(f"  library         {size:12} bytes, {100 * size / small - 100:+.2f} %; limit {most:.0f}")
@@ -97,7 +104,8 @@ def archives(folder: Path) -> None:
 def large(files: list[Path], packed: dict[Path, Path], place: Path, clips: int) -> None:
     """Print the times of a library of many clips."""
     path, names = place / "large.mocapdb", []
-    numbers = [(file, mp.load(packed[file])) for file in files[: min(len(files), 200)]]
+    motion = [path for path in files if path.suffix.lower() != ".asf"]
+    numbers = [(file, mp.load(packed[file])) for file in motion[:200]]
     with mp.open_library(path, "a") as library, library.db.writing():
         for file, _ in numbers:
             names.append(f"whole/{len(names)}{file.suffix}")
@@ -106,8 +114,8 @@ def large(files: list[Path], packed: dict[Path, Path], place: Path, clips: int) 
             _, clip = numbers[number % len(numbers)]
             first = number // len(numbers) % max(clip.frames - 8, 1)
             library.add(clip[first : first + 8], f"cuts/{number}", codec="exact:level=1")
-    start = least(lambda: subprocess.run([*LIST, "--help"], capture_output=True, check=True), 5)
-    listed = least(lambda: subprocess.run([*LIST, path], capture_output=True, check=True), 5)
+    start = least(lambda: command("--version"), 9)
+    listed = least(lambda: command("library", "list", path), 9)
     print(f"a library of {clips} clips, {path.stat().st_size} bytes")
     print(f"  list            {listed:8.3f} s, {listed - start:+.3f} s beyond start-up")
     beyond = []
@@ -122,7 +130,9 @@ def large(files: list[Path], packed: dict[Path, Path], place: Path, clips: int) 
 
         beyond.append(least(load, 5) - least(load_file, 5))
     middle = sorted(beyond)[len(beyond) // 2]
-    print(f"  one clip        {1e3 * middle:+8.2f} ms beyond its .mcz, at most {1e3 * max(beyond):+.2f}")
+    print(
+        f"  one clip        {1e3 * middle:+8.2f} ms beyond its .mcz, at most {1e3 * max(beyond):+.2f}"
+    )
     play(path, names)
 
 
@@ -141,6 +151,11 @@ def play(path: Path, names: Iterable[str], block: int = 512, frames: int = 2048)
 
         spent = processor(all_at_once)
     print(f"  100 at once     {1e3 * spent / frames:8.2f} ms of processor time a frame")
+
+
+def command(*words: str | Path) -> None:
+    """Run a command."""
+    subprocess.run([*COMMAND, *words], capture_output=True, check=True)
 
 
 def least(work: Callable[[], object], times: int) -> float:

@@ -23,9 +23,10 @@ from mocapress.library.adding import (
     add_companion,
 )
 from mocapress.library.checking import Fault, check, verify_clip
-from mocapress.library.clips import StoredClip, by_id, select, with_columns
+from mocapress.library.clips import StoredClip, by_id, select
 from mocapress.library.coding import Coder
-from mocapress.library.database import Database
+from mocapress.library.columns import with_columns
+from mocapress.library.database import WAIT, Database
 from mocapress.library.exporting import export
 from mocapress.library.opened import OpenedClip
 from mocapress.library.removing import recompress, remove_clips
@@ -37,7 +38,6 @@ from mocapress.source import Named, Source
 if TYPE_CHECKING:
     import pandas as pd
 
-WAIT = 10.0
 READ, APPEND = "r", "a"
 Which = str | StoredClip | int
 """A clip: its name, itself, or its id."""

@@ -10,10 +10,10 @@ import numpy as np
 
 from mocapress.api.opening import Opened, Rows
 from mocapress.codecs import Model
-from mocapress.container import Damage, Head, Original
+from mocapress.container import Damage, Head, Original, unpack
 from mocapress.container.chunks import entry_of, write_end
 from mocapress.container.head import join_parts
-from mocapress.container.limits import most_values
+from mocapress.container.limits import UNPACKED, most_values
 from mocapress.container.original import read_problems, write_notes, write_original
 from mocapress.container.sections import section
 from mocapress.container.tags import MAGIC, VERSION, Tag
@@ -135,26 +135,27 @@ class StoredMcz(Source):
     def _skeleton(self) -> bytes | None:
         if self.facts.skeleton is None:
             return None
-        return self._hashed("skeletons", "record", self.facts.skeleton)
+        number = self.facts.skeleton
+        row = self.db.connection.execute(
+            "SELECT record, hash FROM skeletons WHERE id = ?", [number]
+        ).fetchone()
+        record = b"" if row is None else unpack(row[0], "skeleton", UNPACKED)
+        if row is None or hash_of(record) != row[1]:
+            raise CorruptError(f"damaged: row {number} of skeletons", file=self.name)
+        return record
 
     def _original(self, text: int) -> Original:
         facts = self.facts
-        packed = self._hashed("texts", "packed", text)
+        row = self.db.connection.execute(
+            "SELECT packed, hash FROM texts WHERE id = ?", [text]
+        ).fetchone()
+        if row is None or hash_of(row[0]) != row[1]:
+            raise CorruptError(f"damaged: row {text} of texts", file=self.name)
         problems = read_problems(Reader(facts.problems or b"\0", "problems"))
         kind = (facts.format or "") if facts.head is not None else ""
         return Original(
-            kind, original_name(facts), facts.size or 0, facts.sha256 or b"", problems, packed
+            kind, original_name(facts), facts.size or 0, facts.sha256 or b"", problems, row[0]
         )
-
-    def _hashed(self, table: str, column: str, number: int) -> bytes:
-        row = self.db.connection.execute(
-            f"SELECT {column}, hash FROM {table} WHERE id = ?",  # noqa: S608
-            [number],
-        ).fetchone()
-        if row is None or hash_of(row[0]) != row[1]:
-            raise CorruptError(f"damaged: row {number} of {table}", file=self.name)
-        found: bytes = row[0]
-        return found
 
 
 def _possible(facts: Facts) -> bool:
