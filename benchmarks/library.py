@@ -131,7 +131,8 @@ def large(files: list[Path], packed: dict[Path, Path], place: Path, clips: int) 
         beyond.append(least(load, 5) - least(load_file, 5))
     middle = sorted(beyond)[len(beyond) // 2]
     print(
-        f"  one clip        {1e3 * middle:+8.2f} ms beyond its .mcz, at most {1e3 * max(beyond):+.2f}"
+        f"  one clip        {1e3 * middle:+8.2f} ms beyond its .mcz, "
+        f"at most {1e3 * max(beyond):+.2f}"
     )
     play(path, names)
 

@@ -31,12 +31,14 @@ from mocapress.library.exporting import export
 from mocapress.library.opened import OpenedClip
 from mocapress.library.removing import recompress, remove_clips
 from mocapress.library.sharing import Known
+from mocapress.library.windows import VALUES, Windows
 from mocapress.models import Place, load_model
 from mocapress.motion import Clip
 from mocapress.source import Named, Source
 
 if TYPE_CHECKING:
     import pandas as pd
+    from numpy.typing import DTypeLike
 
 READ, APPEND = "r", "a"
 Which = str | StoredClip | int
@@ -256,6 +258,34 @@ class Library:
             opened = self.opened(clip, salvage=errors == "skip")
             loaded = load_opened(opened, frames, stream=stream, strict=strict)
         return loaded if columns is None else with_columns(loaded, columns)
+
+    def windows(
+        self,
+        frames: int,
+        *,
+        stride: int | None = None,
+        of: str = VALUES,
+        columns: Sequence[str] | None = None,
+        dtype: "DTypeLike" = "float32",
+        glob: str | Iterable[str] = (),
+        label: str | None = None,
+        skeleton: str | None = None,
+    ) -> Windows:
+        """Give all windows of so many frames as a data set for machine learning; see ``Windows``.
+
+        >>> data = torch.utils.data.DataLoader(lib.windows(64, of="rotations"), num_workers=4)
+        """
+        return Windows(
+            self,
+            frames,
+            stride=stride,
+            of=of,
+            columns=columns,
+            dtype=dtype,
+            glob=glob,
+            label=label,
+            skeleton=skeleton,
+        )
 
     def read_bytes(self, clip: Which) -> bytes:
         """Give the original file of a clip, byte for byte (of a lossy codec: as ``decompress``).
