@@ -85,8 +85,10 @@ compilers:
 	            g++-mingw-w64-x86-64-posix wine wine64 >/dev/null; \
 	    else false; fi; } || echo "not all other compilers are there: $(compilers)"
 
-# The core's decoders for the page, one module a codec; viewer/wasm/ keeps what this builds.
-wasm_modules := $(patsubst core/wasm/%.cpp,build/wasm/%.wasm,$(filter-out %/module.cpp,$(wildcard core/wasm/*.cpp)))
+# The core for the page, in modules of which it carries those that it needs; viewer/wasm/ keeps what
+# this builds.
+decoders := app diffma exact
+wasm_modules := $(patsubst %,build/wasm/%.wasm,$(decoders) formats kinematics)
 ZIG := $(BIN)/python -m ziglang c++ -target wasm32-wasi -std=c++20 -ffp-contract=off -fno-math-errno -fno-exceptions \
     -fno-rtti -msimd128 -flto -Wall -Wextra -Icore -Wl,--strip-all
 
@@ -95,12 +97,14 @@ wasm: $(wasm_modules)
 
 $(wasm_modules): build/wasm/%.wasm: $(wildcard core/wasm/*) $(kernels) $(headers) | $(VENV)/.zig
 	@mkdir -p $(@D)
-	$(ZIG) -Os -mexec-model=reactor core/wasm/module.cpp core/wasm/$*.cpp \
-	    $(wildcard core/$*/*.cpp core/$*_*/*.cpp core/coding/*.cpp core/numbers/*.cpp) -o $@
+	$(ZIG) -Os -mexec-model=reactor core/wasm/space.cpp core/wasm/$*.cpp $(if $(filter $*,$(decoders)),core/wasm/decoder.cpp) \
+	    $(wildcard $(patsubst %,core/%/*.cpp,$(if $(filter kinematics,$*),motion,$*) $*_fast coding numbers)) -o $@
 
-# The compiler for WebAssembly has 0.4 GB; no user needs it, and developers only for `make wasm`.
-$(VENV)/.zig: | $(VENV)/.built
-	$(BIN)/pip install --quiet --disable-pip-version-check 'mocapress[wasm]'
+# The compiler for WebAssembly has 0.4 GB; no user needs it, and developers only for `make wasm`. One
+# version, so that every machine builds the same bytes.
+$(VENV)/.zig:
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check ziglang==0.17.1
 	@touch $@
 
 # A codec's kernels built in other ways, build/check/WAY/CODEC: each must print what

@@ -265,6 +265,7 @@ Header read_header(ByteView header, std::size_t columns) {
     made.constants.emplace_back(still[i], numbers[which[i]]);
   }
   const auto couplings = read_couplings(record, own);
+  made.beside.read(record, columns);
   record.end();
 
   Order order(columns, moved);
@@ -298,9 +299,13 @@ Start read_start(ByteView model, const Header& header) {
 void decode(ByteView payload, double* values, std::size_t frames, std::size_t columns,
             const Header& header, int level, const Start& start) {
   const std::size_t coded = header.coded.size();
+  // A number costs at least log2(65536 / 65512) bits.
+  if (coded * frames > (payload.size() + 64) << 14) fail("the chunk is cut off");
+  std::vector<Restoring::Rows> masks;
+  const ByteView own = header.beside.take(payload, frames, masks);
   std::vector<double> rows(frames * coded);
-  if (coded > 0 || !payload.empty()) {
-    decode(payload, rows.data(), frames, Clip{header.columns, header.couplings, level, start});
+  if (coded > 0 || !own.empty()) {
+    decode(own, rows.data(), frames, Clip{header.columns, header.couplings, level, start});
   }
   for (std::size_t f = 0; f < frames; ++f) {
     double* const row = values + f * columns;
@@ -308,6 +313,7 @@ void decode(ByteView payload, double* values, std::size_t frames, std::size_t co
     for (const auto& [c, number] : header.constants) row[c] = number;
     for (const auto& [c, original] : header.copies) row[c] = row[original];
   }
+  header.beside.restore(values, frames, columns, masks);
 }
 
 }  // namespace mocapress::exact

@@ -8,6 +8,7 @@
 
 #include "coding/bit.hpp"
 #include "exact/codec.hpp"
+#include "exact/restoring.hpp"
 
 namespace mocapress::exact {
 
@@ -17,6 +18,7 @@ struct Header {
   std::vector<Coupling> couplings;
   std::vector<std::pair<std::size_t, double>> constants;    // a column, and all its numbers
   std::vector<std::pair<std::size_t, std::size_t>> copies;  // a column, and the one it copies
+  Restoring beside;
   bool has_model = false;
 };
 

@@ -267,7 +267,7 @@ MotionFile read_amc(std::string_view text, const Skeleton* skeleton) {
   };
   if (const RowStop* stop = first_stop();
       stop != nullptr && stop->end != RowEnd::number_expected && !bones.repeated) {
-    const std::string_view word = Scanner{text, stop->next}.word();
+    const std::string_view word = Scanner{text, static_cast<std::size_t>(stop->next)}.word();
     if (!word.empty() && !is_padding_byte(word.front()) && !bones.places.contains(word)) {
       bones = Bones(all_bones(text, begin, bones));
       made.body = Body(bones.columns, text.size());

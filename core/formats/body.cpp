@@ -25,6 +25,9 @@ void note(ColumnStatistics& column, const NumberShape& shape) {
   column.whole_without_point |= !shape.point;
   column.bare_point |= shape.bare_point;
   column.upper |= shape.upper;
+  column.plus |= shape.plus;
+  column.leading_zero |= shape.leading_zero;
+  column.end_point |= shape.end_point;
 }
 
 // A frame number so many later; without end, around it goes.

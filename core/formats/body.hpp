@@ -23,6 +23,11 @@ struct ColumnStatistics {
   bool whole_without_point = false;
   bool bare_point = false;
   bool upper = false;
+  bool plus = false;
+  bool leading_zero = false;
+  bool end_point = false;
+
+  bool operator==(const ColumnStatistics&) const = default;
 };
 
 struct Body {

@@ -58,7 +58,7 @@ C3dProcessor processor_of(ByteView data, std::uint64_t section) {
 int signed_byte(std::uint8_t byte) { return byte < 128 ? byte : byte - 256; }
 
 std::string_view text(ByteView data, std::uint64_t at, std::uint64_t size) {
-  return {reinterpret_cast<const char*>(data.data()) + at, size};
+  return {reinterpret_cast<const char*>(data.data()) + at, static_cast<std::size_t>(size)};
 }
 
 // The data of a parameter whose type stands at an offset; false where it goes beyond the end.

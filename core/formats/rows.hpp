@@ -24,14 +24,18 @@ Body read_rows(std::string_view text, std::uint64_t begin, std::size_t columns);
 RowStop read_numbers(std::string_view text, std::uint64_t begin, bool free, Row& row);
 
 // Bytes of one kind of row: literals[0] slot literals[1] slot ... literals[n]. With a counter, the
-// first slot is the frame's number. `columns[k]` is the column of slot k; a width above 0 says that
-// the number is padded with blanks on the left.
+// first slot is the frame's number. `columns[k]` is the column of slot k.
 struct RowTemplate {
   bool counter = false;
   std::vector<std::string> literals;
   std::vector<std::uint32_t> columns;
   std::vector<std::uint8_t> widths;
+  std::uint8_t counter_width = 0;  // to which zeros pad the frame's number
 };
+
+// Widths: 0: as it is; to 127: padded on the left to this width; 128: with a blank where there is
+// no sign; above: padded with blanks on the right to the width less 128.
+inline constexpr std::uint8_t kBlankSign = 128;
 
 struct SlotText {
   std::uint32_t slot;

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/detect.hpp"
+#include "formats/header_pattern.hpp"
 #include "formats/motion_file.hpp"
 #include "formats/rows.hpp"
 #include "formats/text.hpp"
@@ -49,7 +51,7 @@ void check_body(std::string_view text, const Body& body, NumberFormat format) {
   row.literals.assign(body.columns + 1 + counted, " ");
   for (std::uint32_t c = 0; c < body.columns; ++c) {
     row.columns.push_back(c);
-    row.widths.push_back(static_cast<std::uint8_t>(c % 12));
+    row.widths.push_back(static_cast<std::uint8_t>(c % 12 * 21));
   }
   std::vector<SlotText> differing;
   for (std::size_t r = 0; r < rows; ++r) {
@@ -75,8 +77,13 @@ void check_file(std::string_view text, const MotionFile& file, NumberFormat form
   std::vector<std::uint32_t> counts;
   counts.reserve(file.bones.size());
   for (const Bone& bone : file.bones) counts.push_back(bone.count);
+  Sample sample;
   for (std::size_t r = 0; r < body.rows(); ++r) {
     if (unread[r]) continue;
+    const std::size_t first = sample.texts.size();
+    sample.texts.resize(first + body.columns);
+    const auto row = body.values.begin() + static_cast<std::ptrdiff_t>(r * body.columns);
+    sample.values.insert(sample.values.end(), row, row + static_cast<std::ptrdiff_t>(body.columns));
     const auto bytes = text.substr(body.offsets[r], body.offsets[r + 1] - body.offsets[r]);
     const auto slots =
         file.skeleton ? bvh_slots(bytes, body.columns) : amc_slots(bytes, file.words, counts);
@@ -87,10 +94,30 @@ void check_file(std::string_view text, const MotionFile& file, NumberFormat form
       Scanner scanner{bytes.substr(0, end), begin};
       if (static_cast<std::size_t>(column) >= body.columns || !scanner.number(value, shape))
         std::abort();
+      sample.texts[first + static_cast<std::size_t>(column)] = bytes.substr(begin, end - begin);
       const double read = body.values[r * body.columns + static_cast<std::size_t>(column)];
       if (!(value == read) && (value == value || read == read)) std::abort();
     }
   }
+  if (detect_formats(body.statistics, sample).size() != body.columns) std::abort();
+}
+
+// A header as a pattern, and any pattern: what comes of it is the header, or no longer than
+// allowed.
+void check_header(std::string_view text) {
+  HeaderReferences refer{{"hip", std::nullopt, "knee"},
+                         {"1 Xrotation", std::nullopt, "0"},
+                         {0, -0.0, 1.5, 1e300, 2, 3},
+                         "0.01",
+                         4};
+  HeaderStyle style{"\n", "  ", {}};
+  const auto [pattern, formats] = header_pattern(text, refer, style);
+  style.formats = formats;
+  const char* why = nullptr;
+  const auto back = print_header(pattern, refer, style, text.size(), why);
+  if (!back || *back != text) std::abort();
+  const auto any = print_header(text, refer, style, 300, why);
+  if (any ? any->size() > 300 : why == nullptr) std::abort();
 }
 
 }  // namespace
@@ -102,7 +129,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                       static_cast<std::uint8_t>(data[2] % 9),
                       (data[3] & 1) != 0,
                       (data[3] & 2) != 0,
-                      (data[3] & 4) != 0};
+                      (data[3] & 4) != 0,
+                      (data[3] & 8) != 0,
+                      (data[3] & 16) != 0,
+                      (data[3] & 32) != 0,
+                      (data[3] & 64) != 0,
+                      (data[3] & 192) == 128};
   if (format.kind == NumberKind::general)
     format.digits = static_cast<std::uint8_t>(1 + data[1] % 17);
   for (std::size_t at = 4; at + 8 <= size && at < 256; at += 8) {
@@ -118,5 +150,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const SkeletonFile asf = read_asf(text);
   if (!asf.fault) check_file(text, read_amc(text, &asf.skeleton), format);
   from_utf16(text);
+  check_header(text);
   return 0;
 }

@@ -52,7 +52,7 @@ unsigned count_digits(std::uint64_t number) {
 
 char* print_exponent(char* out, int exponent, const NumberFormat& format) {
   *out++ = format.upper ? 'E' : 'e';
-  *out++ = exponent < 0 ? '-' : '+';
+  if (exponent < 0 || !format.java) *out++ = exponent < 0 ? '-' : '+';
   const auto magnitude = static_cast<std::uint64_t>(std::abs(exponent));
   return print_digits(out, magnitude,
                       std::max<unsigned>(count_digits(magnitude), format.exponent_digits));
@@ -65,19 +65,26 @@ struct Decimal {
   int exponent;
 };
 
+// What follows a whole number.
+char* print_whole_end(char* out, const NumberFormat& format) {
+  if (format.point_zero || format.end_point) *out++ = '.';
+  if (format.point_zero) *out++ = '0';
+  return out;
+}
+
 // Lays out significant digits (no trailing zeros) as C's %g does, with the switch to an exponent
-// below 1e-4 and from 10^limit on.
+// below 1e-4 and from 10^limit on, or where Java and JavaScript have it.
 char* print_decimal(char* out, Decimal number, int limit, const NumberFormat& format) {
   char digits[24];
   print_digits(digits, number.digits, number.count);
   const auto count = static_cast<int>(number.count);
   const int exponent = number.exponent;
-  if (exponent < -4 || exponent >= limit) {
+  const int least = format.java ? -3 : format.javascript ? -6 : -4;
+  if (exponent < least || exponent >= (format.java ? 7 : format.javascript ? 21 : limit)) {
     *out++ = digits[0];
-    if (count > 1) {
-      *out++ = '.';
-      out = std::copy(digits + 1, digits + count, out);
-    }
+    if (count > 1 || format.java) *out++ = '.';
+    if (count > 1) out = std::copy(digits + 1, digits + count, out);
+    if (count == 1 && format.java) *out++ = '0';
     return print_exponent(out, exponent, format);
   }
   if (exponent < 0) {
@@ -90,8 +97,7 @@ char* print_decimal(char* out, Decimal number, int limit, const NumberFormat& fo
   if (count <= whole) {
     out = std::copy(digits, digits + count, out);
     out = std::fill_n(out, whole - count, '0');
-    if (format.point_zero) *out++ = '.', *out++ = '0';
-    return out;
+    return print_whole_end(out, format);
   }
   out = std::copy(digits, digits + whole, out);
   *out++ = '.';
@@ -158,12 +164,13 @@ char* print_fixed(char* out, double value, const NumberFormat& format) {
     if (out[-1] == '.') {
       if (format.point_zero) {
         *out++ = '0';
-      } else {
+      } else if (!format.end_point) {
         --out;
       }
     }
     if (out == start) *out++ = '0';
   }
+  if (decimals == 0 && format.end_point) *out++ = '.';
   return out;
 }
 
@@ -186,6 +193,8 @@ const char* parse_number(const char* text, const char* end, double& value, Numbe
   const bool negative = p < end && *p == '-';
   if (p < end && (*p == '-' || *p == '+')) ++p;
   const char* const start = p;
+  shape.plus = p > text && !negative;
+  shape.leading_zero = end - p > 1 && p[0] == '0' && is_digit(p[1]);
   std::uint64_t digits = 0;
   while (p < end && is_digit(*p)) digits = digits * 10 + static_cast<std::uint64_t>(*p++ - '0');
   const auto whole = p - start;
@@ -196,6 +205,7 @@ const char* parse_number(const char* text, const char* end, double& value, Numbe
     decimals = p - point;
     shape.point = true;
     shape.bare_point = whole == 0;
+    shape.end_point = decimals == 0;
     shape.trailing_zero = decimals > 0 && p[-1] == '0';
   }
   if (whole + decimals == 0) return nullptr;
@@ -268,7 +278,11 @@ const char* parse_non_finite(const char* text, const char* end, double& value, N
 }
 
 char* print_number(char* out, double value, const NumberFormat& format) {
-  if (std::signbit(value)) *out++ = '-', value = -value;
+  if (std::signbit(value)) {
+    *out++ = '-', value = -value;
+  } else if (format.plus) {
+    *out++ = '+';
+  }
   if (!std::isfinite(value)) {
     const char* const name = std::isnan(value) ? "nan" : "inf";
     return std::copy(name, name + 3, out);
@@ -284,8 +298,7 @@ char* print_number(char* out, double value, const NumberFormat& format) {
   }
   if (value == 0) {
     *out++ = '0';
-    if (format.point_zero) *out++ = '.', *out++ = '0';
-    return out;
+    return print_whole_end(out, format);
   }
   if (format.kind == NumberKind::general)
     return print_decimal(out, round_significant(value, format.digits), format.digits, format);

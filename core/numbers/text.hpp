@@ -22,6 +22,13 @@ struct NumberFormat {
   bool point_zero = false;
   bool bare_point = false;
   bool upper = false;
+  bool plus = false;        // a `+` before what is not negative
+  bool zeros = false;       // what is padded, is padded with zeros
+  bool end_point = false;   // a whole number ends in a point
+  bool java = false;        // an exponent below 1e-3 and from 1e7 on, as in 1.0E-5
+  bool javascript = false;  // an exponent below 1e-6 and from 1e21 on, as in 1e-7
+
+  bool operator==(const NumberFormat&) const = default;
 };
 
 inline constexpr unsigned kMostDigits = 40;
@@ -37,7 +44,10 @@ struct NumberShape {
   bool trailing_zero = false;  // the last decimal is 0
   bool bare_point = false;
   bool upper = false;
-  bool word = false;  // no number: `nan`, `inf` and the like
+  bool plus = false;
+  bool leading_zero = false;  // more zeros than one before the point, or before other digits
+  bool end_point = false;     // a point that nothing follows
+  bool word = false;          // no number: `nan`, `inf` and the like
 };
 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }

@@ -11,35 +11,22 @@
 
 #include "numbers/text.hpp"
 #include "python/bindings.hpp"
+#include "python/number_formats.hpp"
 
 namespace mocapress {
 namespace {
 
-// Kind, digits, exponent_digits, point_zero, bare_point, upper.
-using Formats = Plan<std::uint8_t, 6>;
-// counter, literals, columns, widths
-using TemplateTuple =
-    std::tuple<bool, std::vector<nb::bytes>, std::vector<std::uint32_t>, std::vector<std::uint8_t>>;
-
-NumberFormat number_format(const std::uint8_t* f) {
-  if (f[0] > 5 || f[1] > kMostDigits || f[2] > 8 || (f[0] == 0 && (f[1] < 1 || f[1] > 17)))
-    throw nb::value_error("no such number format");
-  return {static_cast<NumberKind>(f[0]), f[1], f[2], f[3] != 0, f[4] != 0, f[5] != 0};
-}
-
-std::vector<NumberFormat> number_formats(const Formats& formats) {
-  std::vector<NumberFormat> list(formats.shape(0));
-  for (std::size_t c = 0; c < list.size(); ++c) list[c] = number_format(formats.data() + 6 * c);
-  return list;
-}
+// counter, literals, columns, widths, width of the counter
+using TemplateTuple = std::tuple<bool, std::vector<nb::bytes>, std::vector<std::uint32_t>,
+                                 std::vector<std::uint8_t>, std::uint8_t>;
 
 std::vector<RowTemplate> row_templates(const std::vector<TemplateTuple>& tuples,
                                        std::size_t columns) {
   std::vector<RowTemplate> templates;
-  for (const auto& [counter, literals, slots, widths] : tuples) {
+  for (const auto& [counter, literals, slots, widths, counter_width] : tuples) {
     if (literals.size() != slots.size() + 1 + counter || widths.size() != slots.size())
       throw nb::value_error("row template of mismatched parts");
-    RowTemplate row{counter, {}, slots, widths};
+    RowTemplate row{counter, {}, slots, widths, counter_width};
     for (const auto& literal : literals) row.literals.emplace_back(text_of(literal));
     for (const std::uint32_t column : slots)
       if (column >= columns) throw nb::value_error("row template names a column that is not there");
@@ -152,10 +139,10 @@ void bind_rows(nb::module_& module) {
   const auto formats = nb::arg("formats");
   module.def("match_rows", &bound_match_rows, data, nb::arg("offsets"), counters, values,
              nb::arg("selected"), nb::arg("template"), formats,
-             "Compare rows with a template: its counter, literals, columns and widths.\n\n"
-             "A format has kind, digits, exponent_digits, point_zero, bare_point and upper. Gives\n"
-             "which of the selected rows match, and the row, slot and text of numbers written\n"
-             "otherwise.");
+             "Compare rows with a template: its counter, literals, columns, widths and the width\n"
+             "of the counter.\n\n"
+             "Formats are those of docs/format/layout.md, four bytes each. Gives which of the\n"
+             "selected rows match, and the row, slot and text of numbers written otherwise.");
   module.def("print_rows", &bound_print_rows, values, counters, nb::arg("assigned"),
              nb::arg("templates"), formats, nb::arg("cell_rows"), nb::arg("cell_slots"),
              nb::arg("cells"), nb::arg("raw"), nb::arg("most_bytes"),

@@ -1,6 +1,6 @@
 #include "app/header.hpp"
 #include "coding/fail.hpp"
-#include "wasm/module.hpp"
+#include "wasm/decoder.hpp"
 
 namespace mocapress::wasm {
 

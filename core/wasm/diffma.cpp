@@ -1,5 +1,5 @@
 #include "diffma/stored.hpp"
-#include "wasm/module.hpp"
+#include "wasm/decoder.hpp"
 
 namespace mocapress::wasm {
 

@@ -63,7 +63,10 @@ class Told:
         for _ in self.values:
             named, inside = list[bool](), False
             for _ in range(record.integer()):
-                named += [inside] * record.integer()
+                length = record.integer()
+                if length > frames - len(named):
+                    raise CorruptError("a run longer than its chunk")
+                named += [inside] * length
                 inside = not inside
             masks.append(named + [inside] * (frames - len(named)))
         return payload[record.at :], masks

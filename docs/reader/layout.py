@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from container import File, Stream
-from printing import printed
+from printing import padded, printed
 from records import CorruptError, Record, unzigzag
 
 WORDS = {
@@ -22,6 +22,7 @@ class Template:
     pattern: bytes
     columns: list[int]
     widths: bytes
+    counter_width: int
 
 
 class Layout:
@@ -32,6 +33,7 @@ class Layout:
         record, columns = Record(file.layout), len(self.stream.formats)
         flags = record.integer()
         self.encoding = "utf-8" if flags & 2 else "iso8859-1"
+        self.of_file = {0: "", 4: "utf-16-le", 8: "utf-16-be"}[flags & 12]
         self.line_break, self.indentation = record.bytes(), record.bytes()
         self.header_formats = [record.raw(4) for _ in range(record.integer())]
         self.header_pattern, self.tail = record.bytes(), record.bytes()
@@ -54,7 +56,8 @@ class Layout:
         body = b""
         for f, (row, code) in enumerate(zip(rows, self.assigned, strict=True)):
             body += self._row(f, row, self.templates[code - 1]) if code else next(verbatim)
-        return self._header(len(rows)) + body + self.tail
+        file = self._header(len(rows)) + body + self.tail
+        return ("\ufeff" + file.decode()).encode(self.of_file) if self.of_file else file
 
     def _header(self, frames: int) -> bytes:
         out = bytearray()
@@ -103,13 +106,13 @@ class Layout:
             elif byte == NAME:
                 out += self.stream.bones[template.columns[place]].encode(self.encoding)
             elif byte == COUNT:
-                out += str(self.numbers[f]).encode()
+                out += f"{self.numbers[f]:0{template.counter_width}d}".encode()
             elif byte == VALUE:
                 column = template.columns[place]
                 text = self.written.get((f, place))
                 if text is None:
                     told = self.stream.formats[column] or bytes([4, 0, 2, 0])
-                    text = printed(row[column], told).rjust(template.widths[place]).encode()
+                    text = padded(row[column], told, template.widths[place]).encode()
                 out += text
                 place += 1
             else:
@@ -126,7 +129,8 @@ def read_template(record: Record, columns: int) -> Template:
         for _ in range(record.integer()):
             column += 1 + record.signed()
             own.append(column)
-    return Template(pattern, own, record.raw(len(own)) if flags & 2 else bytes(len(own)))
+    widths = record.raw(len(own)) if flags & 2 else bytes(len(own))
+    return Template(pattern, own, widths, record.raw(1)[0] if flags & 4 else 0)
 
 
 def decimal(stream: Stream) -> str:

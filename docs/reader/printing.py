@@ -6,13 +6,25 @@ from decimal import Decimal
 from lines import bits32, digits32, of_bits32
 
 GENERAL, FIXED, TRIMMED, SCIENTIFIC, SHORTEST, SHORTEST32 = range(6)
-POINT_ZERO, BARE_POINT, UPPER = 1, 2, 4
+POINT_ZERO, BARE_POINT, UPPER, PLUS, ZEROS, END_POINT, JAVA, JAVASCRIPT = (1 << k for k in range(8))
+BLANK_SIGN = 128
+
+
+def padded(number: float, told: bytes, width: int) -> str:
+    """Print a number as it stands in its place of a row."""
+    text = printed(number, told)
+    if width == BLANK_SIGN:
+        return text if text[0] in "+-" else " " + text
+    if width > BLANK_SIGN:
+        return text.ljust(width - BLANK_SIGN)
+    return text.zfill(width) if told[3] & ZEROS else text.rjust(width)
 
 
 def printed(number: float, told: bytes) -> str:
     """Print a number in a format of four bytes."""
     kind, digits, exponent_digits, flags = told
-    sign, size = "-" if math.copysign(1.0, number) < 0 else "", abs(number)
+    plus = "+" if flags & PLUS else ""
+    sign, size = "-" if math.copysign(1.0, number) < 0 else plus, abs(number)
     if kind == SHORTEST32 and size <= math.inf:  # pragma: no cover - files are printed by kind 4
         size = of_bits32(bits32(size))
     if not size < math.inf:  # pragma: no cover - what is read from text has neither
@@ -20,13 +32,14 @@ def printed(number: float, told: bytes) -> str:
     if kind in (FIXED, TRIMMED):
         text = fixed(size, kind, digits, flags)
     elif size == 0 and kind != SCIENTIFIC:
-        text = "0.0" if flags & POINT_ZERO else "0"
+        text = "0" + whole_end(flags)
     else:
         text = laid_out(*significant(size, kind, digits), kind, digits, flags)
     mantissa, mark, exponent = text.partition("e")
     if mark:
-        width = exponent_digits + 1
-        text = f"{mantissa}{'E' if flags & UPPER else 'e'}{int(exponent):+0{width}d}"
+        size_of_exponent = str(abs(int(exponent))).rjust(exponent_digits, "0")
+        shown = "-" if exponent[0] == "-" else "" if flags & JAVA else "+"
+        text = f"{mantissa}{'E' if flags & UPPER else 'e'}{shown}{size_of_exponent}"
     return sign + text
 
 
@@ -44,8 +57,13 @@ def fixed(size: float, kind: int, decimals: int, flags: int) -> str:
     if kind == TRIMMED and decimals:
         text = text.rstrip("0")
         if text.endswith("."):
-            text = text + "0" if flags & POINT_ZERO else text[:-1]
-    return text or "0"
+            text = text[:-1] + whole_end(flags)
+    return (text or "0") + "." * (not decimals and flags & END_POINT > 0)
+
+
+def whole_end(flags: int) -> str:
+    """Give what follows a whole number."""
+    return ".0" if flags & POINT_ZERO else "." if flags & END_POINT else ""
 
 
 def significant(size: float, kind: int, count: int) -> tuple[str, int]:
@@ -66,12 +84,17 @@ def significant(size: float, kind: int, count: int) -> tuple[str, int]:
 
 def laid_out(digits: str, exponent: int, kind: int, count: int, flags: int) -> str:
     """Put the point, and an exponent where there is one."""
-    limit = count if kind == GENERAL else 16
+    least, limit = -4, count if kind == GENERAL else 16
+    if flags & JAVA:
+        least, limit = -3, 7
+    elif flags & JAVASCRIPT:
+        least, limit = -6, 21
     if kind != SCIENTIFIC:
         digits = digits.rstrip("0")
-    if kind == SCIENTIFIC or not -4 <= exponent < limit:
-        return f"{digits[0]}.{digits[1:]}".rstrip(".") + f"e{exponent}"
+    if kind == SCIENTIFIC or not least <= exponent < limit:
+        rest = digits[1:] or ("0" if flags & JAVA else "")
+        return f"{digits[0]}.{rest}".rstrip(".") + f"e{exponent}"
     if exponent < 0:
         return ("." if flags & BARE_POINT else "0.") + "0" * (-exponent - 1) + digits
     whole, rest = digits[: exponent + 1].ljust(exponent + 1, "0"), digits[exponent + 1 :]
-    return whole + (f".{rest}" if rest else ".0" if flags & POINT_ZERO else "")
+    return whole + (f".{rest}" if rest else whole_end(flags))

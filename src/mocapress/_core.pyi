@@ -54,7 +54,7 @@ class Body:
         """Indices of rows."""
 
     def statistics(self) -> Annotated[NDArray[numpy.uint8], dict(shape=(None, None))]:
-        """(C, 8)"""
+        """(C, 11)"""
 
 class MotionFile:
     """A motion file that was read."""
@@ -82,6 +82,11 @@ class MotionFile:
 
     @property
     def joints(self) -> list[tuple[str, int, tuple[float, float, float], tuple[str, ...], tuple[float, float, float], str, tuple[tuple[float, float], ...], tuple[tuple[float, float, float], ...]]]: ...
+
+    def places(self, data: bytes, offsets: Annotated[NDArray[numpy.uint64], dict(shape=(None,), order='C', device='cpu', writable=False)], rows: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.int64], dict(shape=(None, None, None))]:
+        """
+        Give where the numbers of some rows stand: (R, C, 2) begin and end, or -1.
+        """
 
     @property
     def frame_time(self) -> str:
@@ -132,6 +137,20 @@ def bvh_slots(row: bytes, columns: int) -> list[tuple[int, int, int]]:
 def amc_slots(row: bytes, words: Sequence[bytes], counts: Sequence[int]) -> list[tuple[int, int, int]]:
     """Find the numbers in a frame, its own number (column -1) first."""
 
+def detect_formats(data: bytes, statistics: Annotated[NDArray[numpy.uint8], dict(shape=(None, 11), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], places: Annotated[NDArray[numpy.int64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.uint8], dict(shape=(None, None))]:
+    """
+    Choose a format per column from some rows, (R, C), and where their numbers stand,
+    (R, C, 2): four bytes each, as docs/format/layout.md has them.
+    """
+
+def header_pattern(header: bytes, names: Sequence[bytes | None], channels: Sequence[bytes | None], numbers: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], time: bytes, rows: int, line_break: bytes, indentation: bytes) -> tuple[bytes, Annotated[NDArray[numpy.uint8], dict(shape=(None, None))]]:
+    """Give the shortest pattern of a header, and the formats that it needs."""
+
+def print_header(pattern: bytes, names: Sequence[bytes | None], channels: Sequence[bytes | None], numbers: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], time: bytes, rows: int, line_break: bytes, indentation: bytes, formats: Annotated[NDArray[numpy.uint8], dict(shape=(None, 4), order='C', device='cpu', writable=False)], most: int) -> bytes:
+    """
+    Give the header of a pattern; ValueError where it refers to what is not there.
+    """
+
 def skeleton_columns(skeleton: object) -> list[tuple[str, int, str, str]]:
     """
     Give name, joint, kind and unit of the columns of all joints' channels.
@@ -148,16 +167,16 @@ def place(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), ord
     Columns are told as joint and kind. None where bones stretch.
     """
 
-def match_rows(data: bytes, offsets: Annotated[NDArray[numpy.uint64], dict(shape=(None,), order='C', device='cpu', writable=False)], counters: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], selected: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], template: tuple[bool, Sequence[bytes], Sequence[int], Sequence[int]], formats: Annotated[NDArray[numpy.uint8], dict(shape=(None, 6), order='C', device='cpu', writable=False)]) -> tuple[Annotated[NDArray[numpy.uint8], dict(shape=(None,))], Annotated[NDArray[numpy.uint64], dict(shape=(None,))], Annotated[NDArray[numpy.uint32], dict(shape=(None,))], list[bytes]]:
+def match_rows(data: bytes, offsets: Annotated[NDArray[numpy.uint64], dict(shape=(None,), order='C', device='cpu', writable=False)], counters: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], selected: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], template: tuple[bool, Sequence[bytes], Sequence[int], Sequence[int], int], formats: Annotated[NDArray[numpy.uint8], dict(shape=(None, 4), order='C', device='cpu', writable=False)]) -> tuple[Annotated[NDArray[numpy.uint8], dict(shape=(None,))], Annotated[NDArray[numpy.uint64], dict(shape=(None,))], Annotated[NDArray[numpy.uint32], dict(shape=(None,))], list[bytes]]:
     """
-    Compare rows with a template: its counter, literals, columns and widths.
+    Compare rows with a template: its counter, literals, columns, widths and the width
+    of the counter.
 
-    A format has kind, digits, exponent_digits, point_zero, bare_point and upper. Gives
-    which of the selected rows match, and the row, slot and text of numbers written
-    otherwise.
+    Formats are those of docs/format/layout.md, four bytes each. Gives which of the
+    selected rows match, and the row, slot and text of numbers written otherwise.
     """
 
-def print_rows(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], counters: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], assigned: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], templates: Sequence[tuple[bool, Sequence[bytes], Sequence[int], Sequence[int]]], formats: Annotated[NDArray[numpy.uint8], dict(shape=(None, 6), order='C', device='cpu', writable=False)], cell_rows: Annotated[NDArray[numpy.uint64], dict(shape=(None,), order='C', device='cpu', writable=False)], cell_slots: Annotated[NDArray[numpy.uint32], dict(shape=(None,), order='C', device='cpu', writable=False)], cells: Sequence[bytes], raw: Sequence[bytes], most_bytes: int) -> bytes:
+def print_rows(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], counters: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], assigned: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], templates: Sequence[tuple[bool, Sequence[bytes], Sequence[int], Sequence[int], int]], formats: Annotated[NDArray[numpy.uint8], dict(shape=(None, 4), order='C', device='cpu', writable=False)], cell_rows: Annotated[NDArray[numpy.uint64], dict(shape=(None,), order='C', device='cpu', writable=False)], cell_slots: Annotated[NDArray[numpy.uint32], dict(shape=(None,), order='C', device='cpu', writable=False)], cells: Sequence[bytes], raw: Sequence[bytes], most_bytes: int) -> bytes:
     """
     Print rows, each by the template assigned to it, until there are too many bytes.
 

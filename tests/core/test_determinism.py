@@ -83,7 +83,7 @@ def need_zig() -> None:
     if importlib.util.find_spec("ziglang") is None:
         if os.environ.get("CI"):
             pytest.fail("no ziglang, which `make .venv/.zig` installs")
-        pytest.skip("no ziglang (pip install 'mocapress[wasm]')")
+        pytest.skip("no ziglang (make .venv/.zig)")
 
 
 def features() -> set[str]:

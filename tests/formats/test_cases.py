@@ -12,9 +12,6 @@ import mocapress as mp
 from mocapress.motion import Clip
 
 CASES = Path(__file__).parents[1] / "cases"
-LATER = {
-    "25-token-based-layouts/g.bvh": "UTF-16",
-}
 REFUSED = {
     "26-truncated/a.bvh": "frame 96 cannot be read",
     "26-truncated/b.bvh": "frame 40 cannot be read",
@@ -45,13 +42,7 @@ FILES = [
     for path in sorted(CASES.glob("*/*"))
     if path.suffix in (".bvh", ".amc")
 ]
-READABLE = [
-    pytest.param(name, marks=pytest.mark.xfail(reason=LATER[name], strict=True))
-    if name in LATER
-    else name
-    for name in FILES
-    if name not in REFUSED
-]
+READABLE = [name for name in FILES if name not in REFUSED]
 
 
 def read(name: str | Path) -> tuple[Clip, list[str]]:

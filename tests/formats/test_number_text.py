@@ -1,16 +1,21 @@
 """Numbers as text: read as ``float`` reads them, printed as C's ``printf`` prints them."""
 
 import math
+import re
 from collections.abc import Callable
+from decimal import Decimal
 
 import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
-from mocapress.formats.number_formats import detect, printed
+from mocapress.formats.layout import build
+from mocapress.formats.number_formats import printed
 from mocapress.formats.rows import read_rows
 from mocapress.motion.number_format import NumberFormat, NumberKind
+from mocapress.source import Source
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 motion = st.floats(-1e6, 1e6) | st.floats(-1e-3, 1e-3)
@@ -113,22 +118,87 @@ def test_flags_change_the_text() -> None:
     assert print_one(1e-9, NumberFormat(NumberKind.GENERAL, 6, upper=True)) == "1E-09"
 
 
+def java(value: float) -> str:
+    """Print as Java's ``Double.toString`` does."""
+    digits, exponent = next(
+        text.split("e") for n in range(17) if float(text := f"{value:.{n}e}") == value
+    )
+    if 1e-3 <= abs(value) < 1e7 or value == 0:
+        plain = f"{Decimal(repr(value)):f}"
+        return plain if "." in plain else plain + ".0"
+    return f"{digits if '.' in digits else digits + '.0'}E{int(exponent)}"
+
+
+def javascript(value: float) -> str:
+    """Print as JavaScript's ``String`` does."""
+    if 1e-6 <= abs(value) < 1e21 or value == 0:
+        plain = f"{Decimal(repr(value)):f}"
+        return plain.removesuffix(".0")
+    digits, exponent = repr(value).split("e")
+    return f"{digits}e{int(exponent):+d}"
+
+
 STYLES: dict[str, tuple[Callable[[float], str], NumberKind]] = {
     "%.6g": (lambda v: f"{v:.6g}", NumberKind.GENERAL),
     "%.4f": (lambda v: f"{v:.4f}", NumberKind.FIXED),
+    "%+.4f": (lambda v: f"{v:+.4f}", NumberKind.FIXED),
+    "%010.4f": (lambda v: f"{v:010.4f}", NumberKind.FIXED),
+    "trailing point": (lambda v: f"{round(v, 1):.1f}".removesuffix("0"), NumberKind.GENERAL),
     "repr": (repr, NumberKind.SHORTEST),
+    "Java": (java, NumberKind.SHORTEST),
+    "JavaScript": (javascript, NumberKind.SHORTEST),
     "%.5e": (lambda v: f"{v:.5e}", NumberKind.SCIENTIFIC),
 }
+
+
+def values_of_many_sizes() -> NDArray[np.float64]:
+    values = np.random.default_rng(7).normal(0, 30, (40, 3))
+    values[:, 1] *= 10.0 ** -np.arange(40.0 // 4).repeat(4)
+    values[::7, 2] = np.round(values[::7, 2])
+    return values
 
 
 @pytest.mark.parametrize("style", STYLES)
 def test_formats_are_found_from_what_is_written(style: str) -> None:
     write, kind = STYLES[style]
-    values = np.random.default_rng(7).normal(0, 30, (40, 3))
-    texts: list[list[bytes | None]] = [[write(float(v)).encode() for v in row] for row in values]
-    data = b"".join(b" ".join(t for t in row if t) + b"\n" for row in texts)
+    texts = [[write(float(v)) for v in row] for row in values_of_many_sizes()]
+    data = "".join(" ".join(row) + "\n" for row in texts).encode()
     body = read_rows(data, 0, 3)
-    found = detect(body.statistics, body.values, texts)
-    assert {f.kind for f in found} == {kind}
-    for c in range(3):
-        assert printed(body.values[:, c], found[c]) == [row[c] for row in texts]
+    layout = build("", data, body, slots)
+    assert {f.kind for f in layout.formats} <= {kind, NumberKind.FIXED}
+    assert layout.verbatim_bytes() == 0
+    assert len(layout.templates) == 1
+    assert layout.join(body.values) == data
+
+
+PADDED: dict[str, Callable[[float], str]] = {
+    "%12.4f": lambda v: f"{v:12.4f}",
+    "% .4f": lambda v: f" {v: .4f}",
+    "%-12.4f": lambda v: f"{v:<12.4f}",
+    "%-12g": lambda v: f"{v:<12.6g}",
+    "% g": lambda v: f"\t{v: .6g}",
+}
+
+
+@pytest.mark.parametrize("style", PADDED)
+def test_numbers_padded_in_some_way_need_one_template(style: str) -> None:
+    rows = values_of_many_sizes()
+    data = "".join("".join(map(PADDED[style], row)) + "\n" for row in rows.tolist()).encode()
+    body = read_rows(data, 0, 3)
+    layout = build("", data, body, slots)
+    assert layout.verbatim_bytes() == 0
+    assert len(layout.templates) == 1
+    assert layout.join(body.values) == data
+
+
+def test_frame_numbers_may_be_padded_with_zeros() -> None:
+    data = b":DEGREES\n" + b"".join(b"%03d\nroot %d.5\n" % (i, i) for i in range(5, 1200))
+    clip, layout, problems, _ = Source(data).split()
+    assert not problems
+    assert layout.verbatim_bytes() == 0
+    assert len(layout.templates) == 1
+    assert layout.join(clip.values) == data
+
+
+def slots(row: bytes) -> list[tuple[int, int, int]]:
+    return [(i, *word.span()) for i, word in enumerate(re.finditer(rb"\S+", row))]

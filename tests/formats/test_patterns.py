@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from mocapress.errors import CorruptError
 from mocapress.formats.header_pattern import header_pattern, style_of
-from mocapress.formats.number_formats import printed
-from mocapress.formats.patterns import Header, References, Style, raw
+from mocapress.formats.patterns import References, Style, print_header, raw
 from mocapress.motion import Joint, Skeleton
 
 SKELETON = Skeleton(
@@ -44,7 +43,7 @@ Frame Time: 0.0083333
 def shortened(header: bytes, rows: int, references: References) -> tuple[bytes, bytes]:
     """Give a header's pattern, and what it prints."""
     pattern, style = header_pattern(header, rows, references, style_of(header, b"", references))
-    return pattern, Header(references, style, rows, len(header), printed).print(pattern)
+    return pattern, print_header(pattern, references, style, rows, len(header))
 
 
 @pytest.mark.parametrize("line_break", [b"\n", b"\r\n"])
@@ -106,20 +105,20 @@ def test_any_header_comes_back(header: bytes, rows: int) -> None:
     for references in (REFERENCES, References()):
         assert shortened(header, rows, references)[1] == header
     style = Style()
-    assert Header(References(), style, 0, len(header), printed).print(raw(header)) == header
+    assert print_header(raw(header), References(), style, 0, len(header)) == header
 
 
 @given(st.binary(max_size=60))
 def test_any_pattern_gives_an_error_or_at_most_what_may_be(pattern: bytes) -> None:
     style = Style(b"\r\n", b"\t" * 50)
     with contextlib.suppress(CorruptError):
-        assert len(Header(REFERENCES, style, 5, 200, printed).print(pattern)) <= 200
+        assert len(print_header(pattern, REFERENCES, style, 5, 200)) <= 200
 
 
 def test_a_deep_indentation_is_no_bomb() -> None:
     pattern = b"{" * 10**6 + b"\1" * 1000
     with pytest.raises(CorruptError, match="longer header"):
-        Header(References(), Style(b"\n", b"\t" * 10**6), 0, 10**6, printed).print(pattern)
+        print_header(pattern, References(), Style(b"\n", b"\t" * 10**6), 0, 10**6)
 
 
 @pytest.mark.parametrize("name", ["Hüfte", "腰"])

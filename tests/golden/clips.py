@@ -230,3 +230,51 @@ def disorder(frames: int = 30) -> bytes:
         bones = ["root " + " ".join(told[:6]), "a\x02b " + " ".join(told[6:8]), f"c {told[8]}"]
         lines += [str(f + 1), *(bones if f % 5 else [bones[0], *bones[:0:-1]])]
     return "\n".join([*lines, ""]).encode()
+
+
+def layouts(style: str, frames: int = 36) -> bytes:
+    """Give a motion file whose numbers are padded, signed or printed in some less usual way."""
+    channels = [wave(20 + k, frames, 30) for k in range(9)]
+    rows = [[channel[f] for channel in channels] for f in range(frames)]
+    if style == "zeros":
+        lines = [":FULLY-SPECIFIED", ":DEGREES"]
+        for f, row in enumerate(rows):
+            told = [f"{number:08.3f}" for number in row[:6]]
+            lines += [f"{f + 1:04d}", "root " + " ".join(told)]
+            lines += ["hip " + " ".join(javascript(number * 1e-6) for number in row[6:])]
+        return "\n".join([*lines, ""]).encode()
+    text = bvh(["zyx", "xyz"], []).decode().replace("Frames: 0", f"Frames: {frames}")
+    if style == "signed":
+        told = ["".join(f" {number: .4f}" for number in row) for row in rows]
+    elif style == "left":
+        told = ["".join(f"{word:<11}" for word in ended(row)) for row in rows]
+    else:
+        told = [" ".join(java(number * 10 ** (k - 4)) for k, number in enumerate(r)) for r in rows]
+    encoding = {"signed": "utf-16-le", "left": "utf-16-be"}.get(style)
+    whole = text + "\n".join([*told, ""])
+    return ("\ufeff" + whole).encode(encoding) if encoding else whole.encode()
+
+
+def ended(row: Sequence[float]) -> list[str]:
+    """Print numbers with a plus, and with a point that nothing follows."""
+    first = [f"{number:+.3f}" for number in row[:3]]
+    second = [f"{number:.0f}." for number in row[3:6]]
+    return first + second + [f"{number:.1f}".removesuffix("0") for number in row[6:]]
+
+
+def java(number: float) -> str:
+    """Print a number of six digits as Java does."""
+    digits, exponent = f"{float(f'{number:.6g}'):.5e}".split("e")
+    if 1e-3 <= abs(number) < 1e7:
+        plain = f"{number:.6g}"
+        return plain if "." in plain else plain + ".0"
+    digits = digits.rstrip("0")
+    return f"{digits}{'0' if digits.endswith('.') else ''}E{int(exponent)}"
+
+
+def javascript(number: float) -> str:
+    """Print a number of six digits as JavaScript does."""
+    digits, exponent = f"{number:.5e}".split("e")
+    if abs(number) >= 1e-6:
+        return f"{number:.{5 - int(exponent)}f}".rstrip("0")
+    return f"{digits.rstrip('0').rstrip('.')}e{int(exponent)}"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 import mocapress as mp
@@ -36,6 +36,7 @@ ntsc = st.sampled_from([Fraction(1001, 24000), Fraction(1001, 30000), Fraction(1
 
 
 @given(rates | frame_times | ntsc, st.lists(st.sampled_from([".amc", ".bvh"]), max_size=5))
+@example(Decimal("0.0070"), [".amc", ".amc", ".bvh"])
 def test_a_duration_survives_all_ways_through_files(
     tmp_path_factory: pytest.TempPathFactory, frame_time: Decimal | Fraction, suffixes: list[str]
 ) -> None:

@@ -4,9 +4,12 @@ import { test } from "node:test";
 
 import { findBearings, turnUp } from "../../viewer/page/state/bearings.js";
 import { compare } from "../../viewer/page/state/comparison.js";
-import { placed } from "../../viewer/page/state/kinematics.js";
+import { placed as placedBy } from "../../viewer/page/work/placing.js";
+import { assets } from "./assets.mjs";
 import { Player } from "../../viewer/page/state/player.js";
 import { Take } from "../../viewer/page/state/take.js";
+
+const placed = (clip) => placedBy(clip, assets);
 
 const UPS = [
   [0, 1],
@@ -58,8 +61,8 @@ function inverse(turn) {
 }
 
 for (const up of UPS) {
-  test(`a figure with axis ${up} up stands upright, on the floor, of a person's size`, () => {
-    const take = new Take(placed(figure(up, 10)));
+  test(`a figure with axis ${up} up stands upright, on the floor, of a person's size`, async () => {
+    const take = new Take(await placed(figure(up, 10)));
     assert.deepEqual(take.bearings.up, up);
     const place = [0, 0, 0];
     take.onStage(0, 1, place);
@@ -95,11 +98,11 @@ test("nothing and a single point have bearings, too", () => {
   assert.ok(Number.isFinite(findBearings(new Float32Array([NaN, 0, 0]), 1, ["a"]).scale));
 });
 
-test("errors are distances", () => {
+test("errors are distances", async () => {
   const [a, b] = [figure([1, 1]), figure([1, 1])];
   b.channels[0] = b.channels[0].map((x, frame) => x + (frame === 7 ? 3 : 0));
   b.channels[2] = b.channels[2].map((x, frame) => x + (frame === 7 ? 4 : 0));
-  const made = compare(new Take(placed(a)), new Take(placed(b)));
+  const made = compare(new Take(await placed(a)), new Take(await placed(b)));
   assert.equal(made.largest, 5);
   assert.deepEqual(
     [...made.worst].filter((error) => error > 0),
@@ -109,7 +112,7 @@ test("errors are distances", () => {
   assert.ok(Math.abs(made.average - 5 / 50) < 1e-9);
   const other = figure([1, 1]);
   other.skeleton.joints[5].parent = 1;
-  assert.equal(compare(new Take(placed(a)), new Take(placed(other))), null);
+  assert.equal(compare(new Take(await placed(a)), new Take(await placed(other))), null);
 });
 
 test("the player plays, steps and begins again", () => {
@@ -135,11 +138,12 @@ test("the player plays, steps and begins again", () => {
   }
 });
 
-test("a clip that no memory can hold is refused before anything is made", () => {
+test("a clip that no memory can hold is refused before anything is made", async () => {
   const clip = figure([1, 1]);
-  assert.throws(
-    () => placed({ ...clip, frames: 1e7 }),
+  await assert.rejects(
+    placed({ ...clip, frames: 1e7 }),
     /too many frames and joints.*found 10000000 x 6/,
   );
-  assert.throws(() => new Take(placed({ ...clip, frames: 0 })), /no frames/);
+  const empty = await placed({ ...clip, frames: 0 });
+  assert.throws(() => new Take(empty), /no frames/);
 });

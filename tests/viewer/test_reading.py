@@ -1,49 +1,106 @@
-"""What the page reads in the browser is what mocapress reads: values, places, and errors."""
+"""What the page reads in the browser is what mocapress reads, bit for bit; so are its errors."""
 
+import base64
+import hashlib
 import json
 import os
 import re
 import shutil
 import subprocess
+import warnings
+from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from browsing import chromium
 
 import mocapress as mp
 from mocapress.motion.columns import skeleton_columns
+from mocapress.viewer import page
 
-SCRIPT = Path(__file__).with_name("positions.mjs")
+SCRIPT = Path(__file__).with_name("read_files.mjs")
 SAMPLES = Path(__file__).parents[2] / "samples"
+CASES = Path(__file__).parents[1] / "cases"
 
 
-def read_by_page(*paths: Path) -> Any:
+def in_node(drops: Sequence[Sequence[Path]]) -> list[Any]:
+    """Give what the page makes of files that are dropped together, for each such drop."""
     node = shutil.which("node")
     if node is None:
         reason = "no node (Debian: apt-get install nodejs); `make browser` installs it as root"
         if os.environ.get("CI"):
             pytest.fail(reason)
         pytest.skip(reason)
-    done = subprocess.run([node, SCRIPT, *paths], capture_output=True, text=True, check=True)
-    return json.loads(done.stdout)
+    names = "\n".join("\t".join(map(str, drop)) for drop in drops)
+    done = subprocess.run([node, SCRIPT], input=names, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def read_by_page(*paths: Path) -> Any:
+    (made,) = in_node([paths])
+    return made
+
+
+def read_natively(path: Path) -> mp.Clip:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", mp.MotionWarning)
+        return mp.read(path)
+
+
+def dropped(path: Path) -> list[Path]:
+    """Give a file, and its skeleton beside it."""
+    beside = read_natively(path).metadata.get("skeleton")
+    return [path, *([Path(beside)] if beside else [])]
+
+
+def sha256(values: np.ndarray[Any, Any]) -> str:
+    return hashlib.sha256(np.ascontiguousarray(values).tobytes()).hexdigest()
+
+
+def compare(path: Path, made: Any) -> None:
+    clip = read_natively(path)
+    assert made["names"] == [column.name for column in clip.columns], path
+    assert made["frames"] == clip.frames, path
+    assert made["frameTime"] == (float(clip.frame_time) if clip.frame_time else None), path
+    assert made["values"] == sha256(clip.values.T), path
+    if clip.skeleton is None:
+        assert made["positions"] is None, path
+        return
+    try:
+        expected, fault = sha256(mp.positions(clip, end_sites=True)), None
+    except mp.UnsupportedError as error:
+        expected, fault = None, error.what
+    assert (made["positions"], made.get("error")) == (expected, fault), path
 
 
 def check(path: Path) -> None:
-    clip = mp.read(path)
-    beside = clip.metadata.get("skeleton")
-    (made,) = read_by_page(path, *([Path(beside)] if beside else []))["clips"]
-    assert made["names"] == [column.name for column in clip.columns]
-    assert made["length"] == clip.frames
-    assert made["frameTime"] == (float(clip.frame_time) if clip.frame_time is not None else None)
-    np.testing.assert_array_equal(np.array(made["values"]).T, clip.values[made["frames"]])
-    if clip.skeleton:
-        some = clip.with_frames(clip.values[made["frames"]], clip.frame_time)
-        places = mp.positions(some, end_sites=True)
-        np.testing.assert_allclose(
-            np.array(made["positions"]).reshape(places.shape), places, rtol=0, atol=1e-9
-        )
+    (made,) = read_by_page(*dropped(path))["clips"]
+    compare(path, made)
+
+
+def compare_all(paths: Sequence[Path], page_reads: Any) -> int:
+    """Compare files; give how many of them are read."""
+    drops: list[list[Path]] = []
+    faults: dict[int, mp.MocapressError] = {}
+    for i, path in enumerate(paths):
+        try:
+            drops.append(dropped(path))
+        except mp.MocapressError as error:
+            faults[i] = error
+            beside = error.file if error.file and error.file.endswith(".asf") else None
+            drops.append([path, *([Path(beside)] if beside else [])])
+    for i, (path, made) in enumerate(zip(paths, page_reads(drops), strict=True)):
+        if i in faults:
+            assert not made["clips"], path
+            assert faults[i].what in made["errors"][0], path
+        else:
+            assert made["errors"] == [], path
+            compare(path, made["clips"][0])
+    return len(paths) - len(faults)
 
 
 @pytest.mark.parametrize("name", ["cmu_01_01.amc", "freebvh.bvh", "mocapbank.bvh"])
@@ -51,15 +108,60 @@ def test_samples(samples: Path, name: str) -> None:
     check(samples / name)
 
 
+def motion_files(folder: Path) -> list[Path]:
+    return sorted(path for path in folder.rglob("*") if path.suffix.lower() in (".amc", ".bvh"))
+
+
+def test_cases() -> None:
+    assert compare_all(motion_files(CASES), in_node) > 40
+
+
 @pytest.mark.corpus
 def test_clips_of_all_kinds(corpus_clips: list[Path]) -> None:
-    for path in corpus_clips[::12]:
-        try:
-            mp.read(path)
-        except mp.MocapressError:
-            assert read_by_page(path)["errors"]
-        else:
-            check(path)
+    compare_all([path for path in corpus_clips if path.suffix.lower() in (".amc", ".bvh")], in_node)
+
+
+READ = """async ([modules, drops, files, script]) => {
+    const urls = new Map();
+    for (const [path, source] of modules) {
+        const named = source.replace(/"module:([^"]+)"/g, (_, name) => `"${urls.get(name)}"`);
+        urls.set(path, URL.createObjectURL(new Blob([named], {type: "text/javascript"})));
+    }
+    const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+    const {readFiles} = await import(urls.get("page/reading/files.js"));
+    const {placesOf} = await import(urls.get("page/work/placing.js"));
+    const {Assets} = await import(urls.get("mcz/assets.js"));
+    const own = URL.createObjectURL(new Blob([script], {type: "text/javascript"}));
+    const {digests} = await import(own);
+    const assets = new Assets((path) => bytes(files[path]));
+    const made = [];
+    for (const drop of drops) {
+        const given = drop.map(([name, text]) => ({name, bytes: bytes(text)}));
+        made.push(await digests({readFiles, placesOf}, given, assets));
+    }
+    return made;
+}"""
+
+
+def test_the_browser_reads_the_same(samples: Path, tmp_path: Path) -> None:
+    wanted = ("mcz/", "diffma/", "page/reading/", "page/work/")
+    modules = [[name, text] for name, text in page.modules().items() if name.startswith(wanted)]
+    script = SCRIPT.with_name("reading_digests.mjs").read_text()
+    empty = tmp_path / "empty.html"
+    empty.write_text("<!doctype html>")
+
+    def in_chromium(drops: Sequence[Sequence[Path]]) -> Any:
+        told = [
+            [[path.name, base64.b64encode(path.read_bytes()).decode()] for path in drop]
+            for drop in drops
+        ]
+        with chromium() as browser:
+            tab = browser.new_page()
+            tab.goto(empty.as_uri())  # on about:blank there is no crypto.subtle
+            files = page.encoded(page.asset_names())
+            return tab.evaluate(READ, [modules, told, files, script])
+
+    assert compare_all([*motion_files(samples), *motion_files(CASES)], in_chromium) > 40
 
 
 BVH = (SAMPLES / "mocapbank.bvh").read_bytes()
@@ -144,7 +246,7 @@ def test_what_loses_nothing_is_played_and_said(tmp_path: Path, name: str) -> Non
     with pytest.warns(mp.MotionWarning) as caught:
         clip = mp.read(file)
     (made,) = read_by_page(file)["clips"]
-    assert made["length"] == clip.frames
+    assert made["frames"] == clip.frames
     notes = [note for note in made["notes"] if "no skeleton" not in note]
     for note, warning in zip(notes, caught, strict=True):
         assert isinstance(warning.message, mp.MotionWarning)

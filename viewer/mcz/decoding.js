@@ -1,5 +1,6 @@
 import { crc32 } from "./crc32.js";
 import { MczError } from "./error.js";
+import { instantiate } from "./instance.js";
 import { unpackLzma2 } from "./xz.js";
 
 const MOST_CHUNK = 2 ** 20;
@@ -85,19 +86,6 @@ export async function decoderOf(stream, model, assets) {
       throw error;
     }
   };
-}
-
-function instantiate(module) {
-  const instance = new WebAssembly.Instance(module, {
-    page: {
-      fail(text, size) {
-        const bytes = new Uint8Array(instance.exports.memory.buffer, text, size);
-        throw new MczError(new TextDecoder().decode(bytes));
-      },
-    },
-  });
-  instance.exports._initialize();
-  return instance;
 }
 
 function decode({ exports }, told, { columns, formats, header, model, payload }, frames) {

@@ -2,7 +2,7 @@ import { Record } from "./record.js";
 
 // docs/format.md, "Limits".
 const MOST = { streams: 256, parameters: 64, joints: 2 ** 16, columns: 2 ** 20, kinds: 64 };
-const KINDS = ["tx", "ty", "tz", "rx", "ry", "rz", "l"];
+const KINDS = ["tx", "ty", "tz", "rx", "ry", "rz", "l", "sx", "sy", "sz"];
 const MODEL_NAME = 32;
 const MOST_DIGITS = 40;
 
@@ -153,7 +153,8 @@ function readColumns(record, skeleton) {
     const joints = skeleton?.joints ?? [];
     const bones = joints.map(({ name, channels }, joint) => ({ name, joint, count: channels.length }));
     const kinds = joints.flatMap((joint) => joint.channels);
-    const units = kinds.map((kind) => (kind[0] === "r" ? skeleton.angleUnit : "length"));
+    const unitOf = { r: skeleton?.angleUnit, t: "length", l: "length" };
+    const units = kinds.map((kind) => unitOf[kind[0]] ?? "");
     if (kinds.length !== count) throw record.fail(`${count} columns of ${kinds.length} channels`);
     columns = columnsOf(bones, kinds, units);
   } else if (form === 1) {
@@ -219,7 +220,7 @@ function readFormats(record, count) {
   const known = record.list(record.count(4), () => {
     const [kind, digits, exponent, flags] = record.raw(4);
     const most = kind === 0 ? 17 : MOST_DIGITS;
-    if (kind > 5 || digits > most || (kind === 0 && !digits) || exponent > 8 || flags > 7) {
+    if (kind > 5 || digits > most || (kind === 0 && !digits) || exponent > 8 || (flags & 192) === 192) {
       throw record.fail("no number format");
     }
     return [kind, digits];

@@ -12,6 +12,7 @@ from importlib.metadata import entry_points
 
 from mocapress.errors import UnsupportedError
 from mocapress.formats.contract import Format, Split
+from mocapress.formats.encodings import head_as_utf8
 
 __all__ = [
     "Format",
@@ -101,7 +102,7 @@ def by_name(file: str) -> Format | None:
 
 def recognise(data: bytes, file: str = "") -> Format | None:
     """Tell a format from a file's contents, then from its name; None for none."""
-    head = data[:_HEAD].lstrip(b"\xef\xbb\xbf \t\r\n")
+    head = head_as_utf8(data[:_HEAD]).lstrip(b"\xef\xbb\xbf \t\r\n")
     found = next((made for made in _all() if made.recognises(head)), None)
     return found or by_name(file)
 

@@ -8,6 +8,7 @@ from mocapress import _core
 from mocapress.errors import UnsupportedError
 from mocapress.formats.asf import asf_words, format_asf
 from mocapress.formats.contract import Format, Split, split_of
+from mocapress.formats.encodings import FileText
 from mocapress.formats.joint_names import words
 from mocapress.formats.layout import build, print_clip
 from mocapress.formats.number_formats import to_state
@@ -22,16 +23,17 @@ _KEYWORD = re.compile(rb"(?:^|[\r\n])[ \t]*:(fully-specified|degrees|radians)\b"
 
 def split(data: bytes, skeleton: Skeleton | None = None, file: str | None = None) -> Split:
     """Take an AMC apart; angles are in the unit that it names, otherwise the skeleton's."""
-    read = _core.read_amc(data, skeleton)
+    text = FileText.of(data)
+    read = _core.read_amc(text.data, skeleton)
     if read.fault:
-        raise Problem.told(read.fault).error(file)
+        raise Problem.told(read.fault, text).error(file)
     body = Body.of(read.body)
     columns = tuple(Column(*column) for column in read.columns)
     frame_time = 1 / Fraction(read.frame_time) if read.frame_time else None
     clip = Clip.of(body.values, columns, frame_time, skeleton)
     slots = partial(_core.amc_slots, words=read.words, counts=read.counts)
-    layout = build("amc", data, body, slots)
-    return split_of(clip, layout, [Problem.told(fact) for fact in read.problems], file)
+    layout = build("amc", text, body, slots, partial(read.places, text.data, body.offsets))
+    return split_of(clip, layout, [Problem.told(fact, text) for fact in read.problems], file)
 
 
 def fit(clip: Clip) -> Clip:

@@ -6,6 +6,7 @@ import numpy as np
 
 from mocapress import _core
 from mocapress.formats.contract import Format
+from mocapress.formats.encodings import FileText
 from mocapress.formats.joint_names import escaped, words
 from mocapress.formats.problems import Problem
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3
@@ -23,9 +24,10 @@ def parse_asf(data: bytes, file: str | None = None) -> Skeleton:
         When it does not follow the format: with line, expected and found.
 
     """
-    read = _core.read_asf(data)
+    text = FileText.of(data)
+    read = _core.read_asf(text.data)
     if read.fault:
-        raise Problem.told(read.fault).error(file)
+        raise Problem.told(read.fault, text).error(file)
     joints = tuple(Joint(*joint) for joint in read.joints)
     unit = "rad" if read.radians else "deg"
     return Skeleton(joints, "fixed", unit, read.length_unit, read.name, {"mass": read.mass})

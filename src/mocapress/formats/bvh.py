@@ -6,6 +6,7 @@ from functools import partial
 from mocapress import _core
 from mocapress.errors import UnsupportedError
 from mocapress.formats.contract import Format, Split, split_of
+from mocapress.formats.encodings import FileText
 from mocapress.formats.joint_names import escaped
 from mocapress.formats.layout import build, print_clip
 from mocapress.formats.number_formats import to_state
@@ -25,15 +26,17 @@ _WORDS = {
 
 def split(data: bytes, _skeleton: Skeleton | None = None, file: str | None = None) -> Split:
     """Take a BVH apart; it has its skeleton in itself."""
-    read = _core.read_bvh(data)
+    text = FileText.of(data)
+    read = _core.read_bvh(text.data)
     if read.fault:
-        raise Problem.told(read.fault).error(file)
+        raise Problem.told(read.fault, text).error(file)
     body = Body.of(read.body)
     skeleton = Skeleton(tuple(Joint(*joint) for joint in read.joints), "moving")
     columns = tuple(Column(*column) for column in read.columns)
     clip = Clip.of(body.values, columns, Decimal(read.frame_time), skeleton)
-    layout = build("bvh", data, body, partial(_core.bvh_slots, columns=len(columns)))
-    return split_of(clip, layout, [Problem.told(fact) for fact in read.problems], file)
+    slots = partial(_core.bvh_slots, columns=len(columns))
+    layout = build("bvh", text, body, slots, partial(read.places, text.data, body.offsets))
+    return split_of(clip, layout, [Problem.told(fact, text) for fact in read.problems], file)
 
 
 def write(clip: Clip) -> dict[str, bytes]:

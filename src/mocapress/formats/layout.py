@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.errors import CorruptError
-from mocapress.formats.number_formats import SHORTEST, detect, packed
+from mocapress.formats.encodings import FileText, encoded
+from mocapress.formats.number_formats import SHORTEST, packed, unpacked
+from mocapress.formats.row_templates import Row, RowTemplate, Slot, templates_of
 from mocapress.formats.rows import Body
 from mocapress.motion.clip import Clip
 from mocapress.motion.number_format import NumberFormat
@@ -21,27 +23,8 @@ from mocapress.motion.number_format import NumberFormat
 MOST_TEMPLATES = 64
 # Of how many rows the texts are looked at to find formats.
 _SAMPLE = 48
-
-Slot = tuple[int, int, int]
-"""A number in a row's bytes: its column (-1: the frame's number), where it begins and ends."""
-
-
-@dataclass(frozen=True, slots=True)
-class RowTemplate:
-    """The bytes of one kind of row around its numbers."""
-
-    counter: bool
-    """Whether the first slot is the frame's number."""
-    literals: tuple[bytes, ...]
-    """One before every slot and one behind the last."""
-    columns: tuple[int, ...]
-    """Column of each slot."""
-    widths: tuple[int, ...]
-    """Width to which a slot's number is padded on the left, 0 for none."""
-
-    def as_tuple(self) -> tuple[bool, list[bytes], list[int], list[int]]:
-        """Give it as the compiled core takes it."""
-        return self.counter, list(self.literals), list(self.columns), list(self.widths)
+# A template that leaves fewer numbers than one in so many written otherwise is good enough.
+_FEW = 50
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,6 +50,9 @@ class Layout:
     """Numbers written otherwise than their column: row, slot, text; sorted."""
     raw_rows: tuple[bytes, ...]
     """Rows kept verbatim, in order."""
+    encoding: str = ""
+    """``utf-16-le`` or ``utf-16-be``, after a byte order mark, where the text is not bytes as they
+    are but UTF-8 of such a file."""
 
     def verbatim_bytes(self) -> int:
         """Give how many bytes of the body are kept as they are."""
@@ -97,11 +83,12 @@ class Layout:
             self.cell_slots,
             list(self.cells),
             list(self.raw_rows),
-            most_bytes,
+            2 * most_bytes if self.encoding else most_bytes,
         )
-        if len(self.header) + len(body) + len(self.tail) > most_bytes:
+        file = encoded(self.header + body + self.tail, self.encoding)
+        if len(file) > most_bytes:
             raise CorruptError("the layout makes a longer file than announced")
-        return self.header + body + self.tail
+        return file
 
     def rows(self, keep: NDArray[np.bool_]) -> "Layout":
         """Give the layout of those rows alone that are to be kept, (F,)."""
@@ -138,50 +125,57 @@ NO_ROWS = Layout(
 
 def build(
     kind: str,
-    data: bytes,
+    file: FileText | bytes,
     body: Body,
     slots_of_row: Callable[[bytes], list[Slot]],
+    places_of_rows: Callable[[NDArray[np.int64]], NDArray[np.int64]] | None = None,
 ) -> Layout:
     """Find the layout of a file whose rows are read.
 
     Parameters
     ----------
-    kind, data, body
+    kind, file, body
         Id of the format, the file and its rows.
     slots_of_row
         Gives where the numbers of a row's bytes stand, in order.
+    places_of_rows
+        Gives where the numbers of some rows stand in the file, (R, C, 2) begin and end, or -1;
+        by default ``slots_of_row`` is asked.
 
     """
+    data, encoding = file if isinstance(file, FileText) else (file, "")
     offsets = body.offsets.astype(np.int64)
-    slots: dict[int, tuple[bytes, list[Slot]]] = {}
+    slots: dict[int, Row] = {}
 
-    def row(index: int) -> tuple[bytes, list[Slot]]:
+    def row(index: int) -> Row:
         if index not in slots:
             text = data[offsets[index] : offsets[index + 1]]
             slots[index] = text, slots_of_row(text)
         return slots[index]
 
+    def places_by_slots(rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        places = np.full((len(rows), body.values.shape[1], 2), -1, np.int64)
+        for found, index in zip(places, rows.tolist(), strict=True):
+            for column, begin, end in row(index)[1]:
+                if column >= 0:
+                    found[column] = offsets[index] + begin, offsets[index] + end
+        return places
+
     frames = len(body.values)
     pending = np.setdiff1d(np.arange(frames), body.unread)
-    places = np.linspace(0, len(pending) - 1, min(len(pending), _SAMPLE)).astype(np.int64)
-    sample = pending[np.unique(places)]
-
-    def texts_of(index: int) -> Sequence[bytes | None]:
-        text, numbers = row(index)
-        places = {column: text[start:end] for column, start, end in numbers}
-        return [places.get(column) for column in range(body.values.shape[1])]
-
-    texts = [texts_of(index) for index in sample.tolist()]
-    formats = detect(body.statistics, body.values[sample], texts)
+    some = np.linspace(0, len(pending) - 1, min(len(pending), _SAMPLE)).astype(np.int64)
+    sample = pending[np.unique(some)]
+    places = (places_of_rows or places_by_slots)(sample)
+    coded = _core.detect_formats(data, body.statistics, body.values[sample], places)
+    formats = unpacked(coded)
 
     templates: list[RowTemplate] = []
     assigned = np.full(frames, -1, np.int32)
     cells: list[tuple[int, int, bytes]] = []
     while len(pending) and len(templates) < MOST_TEMPLATES:
-        first, second = row(int(pending[0])), row(int(pending[min(1, len(pending) - 1)]))
-        for template in (_padded_template(first, second), _template(*first)):
-            if template is None:
-                continue
+        best = None
+        numbers = len(pending) * body.values.shape[1]
+        for template in templates_of(map(row, pending.tolist()), formats):
             matched, rows, at, found = _core.match_rows(
                 data,
                 body.offsets,
@@ -189,12 +183,16 @@ def build(
                 body.values,
                 pending,
                 template.as_tuple(),
-                packed(formats),
+                coded,
             )
-            if matched.any():
+            score = int(matched.sum()) * body.values.shape[1] - len(found)
+            if matched.any() and (best is None or score > best[0]):
+                best = score, template, matched, rows, at, found
+            if score >= numbers - numbers // _FEW:
                 break
-        if template is None or not matched.any():
+        if best is None:
             break
+        _, template, matched, rows, at, found = best
         assigned[pending[matched == 1]] = len(templates)
         templates.append(template)
         cells += zip(rows.tolist(), at.tolist(), found, strict=True)
@@ -212,6 +210,7 @@ def build(
         np.array([cell[1] for cell in cells], np.uint32),
         tuple(cell[2] for cell in cells),
         tuple(row(index)[0] for index in np.flatnonzero(assigned < 0).tolist()),
+        encoding,
     )
 
 
@@ -245,40 +244,3 @@ def print_clip(clip: Clip, header: bytes, literals: Sequence[bytes], *, counter:
         (),
     )
     return layout.join(clip.values)
-
-
-def _template(text: bytes, slots: list[Slot]) -> RowTemplate:
-    ends = [0, *(end for _, _, end in slots)]
-    starts = [*(start for _, start, _ in slots), len(text)]
-    columns = tuple(column for column, _, _ in slots if column >= 0)
-    return RowTemplate(
-        len(columns) < len(slots),
-        tuple(text[end:start] for end, start in zip(ends, starts, strict=True)),
-        columns,
-        (0,) * len(columns),
-    )
-
-
-def _padded_template(
-    first: tuple[bytes, list[Slot]], second: tuple[bytes, list[Slot]]
-) -> RowTemplate | None:
-    """Read two rows as numbers padded to fixed widths, where they can be read so."""
-    template, other = _template(*first), _template(*second)
-    if template.literals == other.literals or len(template.literals) != len(other.literals):
-        return None
-    skip = 1 if template.counter else 0
-    literals, widths = list(template.literals), []
-    for k in range(len(template.columns)):
-        padding, width = _width(template.literals[k + skip], first[1][k + skip])
-        _, other_width = _width(other.literals[k + skip], second[1][k + skip])
-        if width != other_width or not 0 < width < 256:
-            return None
-        # The width may take in the one separating blank; what is left of it stays a literal.
-        literals[k + skip] = template.literals[k + skip][: len(padding)]
-        widths.append(width)
-    return RowTemplate(template.counter, tuple(literals), template.columns, tuple(widths))
-
-
-def _width(literal: bytes, slot: Slot) -> tuple[bytes, int]:
-    kept = literal.rstrip(b" ")
-    return kept, len(literal) - len(kept) + slot[2] - slot[1]

@@ -4,26 +4,28 @@ import numpy as np
 
 from mocapress.errors import CorruptError
 from mocapress.formats.header_pattern import header_pattern, style_of
-from mocapress.formats.layout import MOST_TEMPLATES, Layout, RowTemplate
-from mocapress.formats.number_formats import printed, read_format, write_format
+from mocapress.formats.layout import MOST_TEMPLATES, Layout
+from mocapress.formats.number_formats import read_format, write_format
 from mocapress.formats.patterns import (
     BREAK,
     COUNT,
     MOST_FORMATS,
     NAME,
     VALUE,
-    Header,
     References,
     Style,
     encoded,
     pieces,
+    print_header,
     raw,
 )
+from mocapress.formats.row_templates import RowTemplate
 from mocapress.motion.number_format import NumberFormat
 from mocapress.records import Reader, Writer
 
 _COUNTED, _UTF8 = 1, 2
-_COLUMNS, _WIDTHS = 1, 2
+_ENCODINGS = {"": 0, "utf-16-le": 4, "utf-16-be": 8}
+_COLUMNS, _WIDTHS, _COUNTER_WIDTH = 1, 2, 4
 
 
 def write_layout(layout: Layout, references: References) -> bytes:
@@ -34,7 +36,8 @@ def write_layout(layout: Layout, references: References) -> bytes:
         layout.header, len(layout.assigned), references, style_of(layout.header, row, references)
     )
     writer = Writer()
-    writer.integer(_COUNTED * counted | _UTF8 * (style.encoding == "utf-8"))
+    names = _UTF8 * (style.encoding == "utf-8")
+    writer.integer(_COUNTED * counted | names | _ENCODINGS[layout.encoding])
     writer.bytes(style.line_break)
     writer.bytes(style.indentation)
     writer.integer(len(style.formats))
@@ -96,7 +99,11 @@ def read_layout(
 
     """
     reader = Reader(data, "layout")
-    flags = reader.integer(_COUNTED | _UTF8)
+    flags = reader.integer(15)
+    of_file = {code: name for name, code in _ENCODINGS.items()}.get(flags & 12)
+    if of_file is None:
+        raise reader.fail("a text in two encodings")
+    most = 2 * most if of_file else most
     line_break, indentation = reader.bytes(), reader.bytes()
     of_header = tuple(read_format(reader) for _ in range(reader.integer(MOST_FORMATS)))
     encoding = "utf-8" if flags & _UTF8 else "latin-1"
@@ -127,7 +134,7 @@ def read_layout(
     announced = frames if rows_printed is None else rows_printed
     return Layout(
         kind,
-        Header(references, style, announced, most, printed).print(pattern),
+        print_header(pattern, references, style, announced, most),
         tail,
         formats,
         templates,
@@ -137,6 +144,7 @@ def read_layout(
         np.array(slots, np.uint32),
         tuple(texts),
         raw_rows,
+        of_file,
     )
 
 
@@ -157,7 +165,9 @@ def _write_template(
 ) -> None:
     in_order = template.columns == tuple(range(columns))
     padded = any(template.widths)
-    writer.integer(_COLUMNS * (not in_order) | _WIDTHS * padded)
+    writer.integer(
+        _COLUMNS * (not in_order) | _WIDTHS * padded | _COUNTER_WIDTH * bool(template.counter_width)
+    )
     slots = [-1] * template.counter + list(template.columns)
     pattern = bytearray()
     for slot, literal in zip(slots, template.literals, strict=False):
@@ -177,6 +187,8 @@ def _write_template(
             expected = column + 1
     if padded:
         writer.data += bytes(template.widths)
+    if template.counter_width:
+        writer.data.append(template.counter_width)
 
 
 def _row_text(text: bytes, style: Style) -> bytes:
@@ -191,7 +203,7 @@ def _read_template(
     counted: bool,
     room: _Room,
 ) -> RowTemplate:
-    flags = reader.integer(_COLUMNS | _WIDTHS)
+    flags = reader.integer(_COLUMNS | _WIDTHS | _COUNTER_WIDTH)
     pattern = reader.bytes()
     of_slots = list(range(columns))
     if flags & _COLUMNS:
@@ -204,6 +216,7 @@ def _read_template(
             of_slots.append(column)
             expected = column + 1
     widths = tuple(reader.raw(len(of_slots))) if flags & _WIDTHS else (0,) * len(of_slots)
+    counter_width = reader.raw(1)[0] if flags & _COUNTER_WIDTH else 0
     slots = [-1] * counted + of_slots
     texts, codes = pieces(pattern)
     literals = [bytearray(texts[0])]
@@ -222,4 +235,4 @@ def _read_template(
             raise reader.fail("longer row templates than may be")
     if len(literals) != len(slots) + 1:
         raise reader.fail("a row of another number of values")
-    return RowTemplate(counted, tuple(map(bytes, literals)), tuple(of_slots), widths)
+    return RowTemplate(counted, tuple(map(bytes, literals)), tuple(of_slots), widths, counter_width)

@@ -1,11 +1,16 @@
 """Text that refers to what a file's head says anyway: docs/format/layout.md, section "Patterns"."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress import _core
 from mocapress.errors import CorruptError
+from mocapress.formats.number_formats import packed
 from mocapress.motion.clip import FrameTime
 from mocapress.motion.number_format import NumberFormat
 from mocapress.motion.skeleton import Skeleton
@@ -118,83 +123,53 @@ def _with_raw(parts: list[bytes]) -> tuple[list[bytes], list[int]]:
     return [bytes(text) for text in texts], references
 
 
-@dataclass(frozen=True, slots=True)
-class Header:
-    """Prints the header's pattern."""
+def of_header(
+    references: References, encoding: str
+) -> tuple[list[bytes | None], list[bytes | None], NDArray[np.float64], bytes]:
+    """Give what a header may refer to as the core takes it; None for what cannot be printed."""
 
-    references: References
-    style: Style
-    rows: int
-    """How many rows are printed behind it."""
-    most: int
-    """Bytes that may come out."""
-    print_numbers: Callable[[Sequence[float], NumberFormat], Sequence[bytes]]
+    def text(name: str) -> bytes | None:
+        try:
+            return name.encode(encoding)
+        except UnicodeEncodeError:
+            return None
 
-    def print(self, pattern: bytes) -> bytes:
-        """Give the header.
+    return (
+        [text(name) for name in references.joints],
+        [words.encode() if words is not None else None for words in references.channels],
+        np.array(references.numbers, np.float64),
+        references.time.encode(),
+    )
 
-        Raises
-        ------
-        CorruptError
-            When the pattern refers to what there is not, or too much comes out.
 
-        """
-        texts, codes = pieces(pattern)
-        numbers = self._numbers(codes)
-        line_break, indentation = self.style.line_break, self.style.indentation
-        out = [texts[0]]
-        depth, joint, left = texts[0].count(b"{") - texts[0].count(b"}"), -1, self.most
-        for code, text in zip(codes, texts[1:], strict=True):
-            if code >= NUMBER or code == PASS:
-                out.append(next(numbers))
-                word = text
-            elif code == BREAK:
-                steps = depth - 1 if text[:1] == b"}" else depth
-                left -= len(line_break) + len(indentation) * steps if steps > 0 else len(line_break)
-                if left < 0:
-                    raise CorruptError("layout: a longer header than may be")
-                word = line_break + indentation * steps + text
-            else:
-                joint += code == NAME
-                word = self._word(code, joint) + text
-            if word:
-                out.append(word)
-                if b"{" in word or b"}" in word:
-                    depth += word.count(b"{") - word.count(b"}")
-        header = b"".join(out)
-        if len(header) > self.most:
-            raise CorruptError("layout: a longer header than may be")
-        return header
+def print_header(
+    pattern: bytes, references: References, style: Style, rows: int, most: int
+) -> bytes:
+    """Give the header of a pattern.
 
-    def _word(self, code: int, joint: int) -> bytes:
-        refer = self.references
-        if code == NAME and joint < len(refer.joints):
-            return encoded(refer.joints[joint], self.style.encoding)
-        if code == CHANNELS and 0 <= joint < len(refer.channels):
-            words = refer.channels[joint]
-            if words is not None:
-                return words.encode()
-        elif code == COUNT:
-            return b"%d" % self.rows
-        elif code == TIME and refer.time:
-            return refer.time.encode()
-        raise CorruptError("layout: a pattern refers to what is not there")
+    Parameters
+    ----------
+    pattern, references, style
+        What is printed, and how.
+    rows
+        How many rows are printed behind it.
+    most
+        Bytes that may come out.
 
-    def _numbers(self, codes: Sequence[int]) -> Iterator[bytes]:
-        """Give the texts of the numbers in the order of the pattern; each format prints at once."""
-        formats = [code for code in codes if code >= NUMBER or code == PASS]
-        if len(formats) > len(self.references.numbers):
-            raise CorruptError("layout: more numbers than the skeleton has")
-        texts = [b""] * len(formats)
-        for k in set(formats) - {PASS}:
-            if k - NUMBER >= len(self.style.formats):
-                raise CorruptError("layout: a number in no format")
-            places = [place for place, code in enumerate(formats) if code == k]
-            values = [self.references.numbers[place] for place in places]
-            printed = self.print_numbers(values, self.style.formats[k - NUMBER])
-            for place, text in zip(places, printed, strict=True):
-                texts[place] = text
-        return iter(texts)
+    Raises
+    ------
+    CorruptError
+        When the pattern refers to what there is not, or too much comes out.
+
+    """
+    refer = of_header(references, style.encoding)
+    formats = packed(style.formats)
+    try:
+        return _core.print_header(
+            pattern, *refer, rows, style.line_break, style.indentation, formats, most
+        )
+    except ValueError as error:
+        raise CorruptError(f"layout: {error}") from None
 
 
 def encoded(name: str, encoding: str) -> bytes:

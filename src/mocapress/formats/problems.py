@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from mocapress import _core
 from mocapress.errors import FormatError
+from mocapress.formats.encodings import FileText
 
 MISSING_ROWS = "missing-rows"
 """Fewer rows than declared."""
@@ -54,14 +55,14 @@ class Problem:
         return cls(name, name in _LOSING, what, line, offset, expected, found)
 
     @classmethod
-    def told(cls, fact: _core.Problem) -> "Problem":
-        """Make one of what the core found."""
+    def told(cls, fact: _core.Problem, text: FileText) -> "Problem":
+        """Make one of what the core found in a file."""
         return cls(
             fact.name,
             fact.loses_motion,
             fact.what,
             fact.line,
-            fact.offset,
+            text.offset(fact.offset),
             fact.expected,
             fact.found,
         )

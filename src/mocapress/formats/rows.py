@@ -19,8 +19,7 @@ class Body:
     offsets: NDArray[np.uint64]
     """(F + 1,) byte offset of every row and of what follows the last."""
     statistics: NDArray[np.uint8]
-    """(C, 8) per column: least and most decimals, most significant digits, fewest exponent digits,
-    whether a trailing zero, a whole number without a point, a bare point, an ``E`` was seen."""
+    """(C, 11) per column: how its numbers are written, see ``core/formats/body.hpp``."""
     unread: NDArray[np.int64]
     """Indices of rows whose numbers cannot be read; they hold the values of the row before."""
 
@@ -33,13 +32,3 @@ class Body:
 def read_rows(data: bytes, begin: int, columns: int) -> Body:
     """Read rows of so many numbers, a line each, until one differs or the data ends."""
     return Body.of(_core.read_rows(data, begin, columns))
-
-
-def merged_statistics(statistics: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Merge statistics along the first axis."""
-    merged: NDArray[np.uint8] = statistics.max(axis=0, initial=0)
-    merged[..., 0] = statistics[..., 0].min(axis=0, initial=255)
-    # A count of 0 says that no exponent was seen.
-    digits = np.where(statistics[..., 3] == 0, 255, statistics[..., 3]).min(axis=0, initial=255)
-    merged[..., 3] = np.where(digits == 255, 0, digits)
-    return merged

@@ -25,9 +25,14 @@ def decimal_seconds(frame_time: Decimal | Fraction) -> Decimal:
 def short_decimal(value: Fraction) -> Decimal:
     """Give the decimal of fewest digits that differs by less than one part in 10**18.
 
-    So that a frame time of up to 17 digits comes back from the rate, and the rate from it.
+    So that a frame time of up to 17 digits comes back from the rate, and the rate from it. A
+    decimal of up to 20 digits stays as it is: it may have been made here before.
     """
     with localcontext() as context:
+        context.prec = 20
+        exact = Decimal(value.numerator) / Decimal(value.denominator)
+        if Fraction(exact) == value:
+            return exact.normalize()
         for context.prec in range(1, 21):
             short = Decimal(value.numerator) / Decimal(value.denominator)
             if abs(Fraction(short) - value) * 10**18 < abs(value):

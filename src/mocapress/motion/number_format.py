@@ -40,6 +40,16 @@ class NumberFormat:
     """Whether the zero before the point is left out: ``.5``."""
     upper: bool = False
     """Whether the exponent is written ``E``."""
+    plus: bool = False
+    """Whether a number that is not negative begins with ``+``."""
+    zeros: bool = False
+    """Whether zeros pad it to its width: ``0012.5``."""
+    end_point: bool = False
+    """Whether a whole number ends in a point: ``12.``."""
+    java: bool = False
+    """``SHORTEST``, an exponent below 1e-3 and from 1e7 on: ``1.0E-5``."""
+    javascript: bool = False
+    """``SHORTEST``, an exponent below 1e-6 and from 1e21 on: ``1e-7``."""
 
     def __str__(self) -> str:
         """Say in words how the numbers look, without the finer points."""

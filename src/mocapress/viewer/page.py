@@ -30,6 +30,7 @@ _VENDORED = {
 }
 _DICTIONARY = "dictionary1.bin"
 _XZ = "vendor/xz/xz.wasm"
+_KINEMATICS = "wasm/kinematics.wasm"
 _IMPORT = re.compile(r"""(\b(?:from|import)\s*)(["'])([^"'\n]+)\2""")
 
 
@@ -104,7 +105,7 @@ def assets_for(codecs: Collection[str], methods: Collection[int]) -> list[str]:
         By which their heads are packed: docs/format.md, "Packed content".
 
     """
-    needed = {f"wasm/{codec}.wasm" for codec in codecs}
+    needed = {_KINEMATICS, *(f"wasm/{codec}.wasm" for codec in codecs)}
     if 1 in methods or "diffma" in codecs:
         needed.add(_XZ)
     if 2 in methods:

@@ -1,12 +1,9 @@
 import { decode, DiffmaError } from "../../diffma/diffma.js";
 import { MczError } from "../../mcz/error.js";
 import { unpackXz } from "../../mcz/xz.js";
-import { parseAmc } from "./amc.js";
-import { parseAsf } from "./asf.js";
-import { parseBvh } from "./bvh.js";
 import { FileError } from "./file_error.js";
 import { readMcz } from "./mcz.js";
-import { latin1 } from "./scanner.js";
+import { readAmc, readBvh } from "./motion_file.js";
 import { channelNames } from "./skeleton.js";
 
 const MOST_JSON = 2 ** 29; // bytes: as long as a text can be in a browser
@@ -36,11 +33,9 @@ async function readFile(file, files, assets) {
   const among = (kind) => files.filter((other) => ending(other) === kind);
   switch (ending(file)) {
     case "bvh":
-      return parseBvh(file.bytes);
-    case "amc": {
-      const beside = skeletonOf(file, among("asf"));
-      return parseAmc(file.bytes, beside ? readSkeleton(beside) : null);
-    }
+      return readBvh(file.bytes, assets);
+    case "amc":
+      return readAmc(file.bytes, skeletonOf(file, among("asf")), assets);
     case "json":
       return fromDiffma(new TextDecoder().decode(file.bytes));
     case "xz": {
@@ -48,9 +43,8 @@ async function readFile(file, files, assets) {
       return fromDiffma(new TextDecoder().decode(unpackXz(xz, file.bytes, MOST_JSON)));
     }
     case "mcz": {
-      const beside = skeletonOf(file, among("asf"));
       const models = among("mcm").map(({ bytes }) => bytes);
-      return readMcz(file.bytes, models, beside ? readSkeleton(beside) : null, assets);
+      return readMcz(file.bytes, models, skeletonOf(file, among("asf")), assets);
     }
     case "mcm":
       throw new FileError("a model without motion", { expected: "a .mcz dropped with it" });
@@ -102,15 +96,7 @@ function skeletonOf(amc, skeletons) {
     )
     .sort((a, b) => b.name.length - a.name.length);
   const only = skeletons.length === 1 ? skeletons[0] : undefined;
-  return skeletons.find((asf) => stemOf(asf) === stem) ?? subject[0] ?? only;
-}
-
-function readSkeleton(file) {
-  try {
-    return parseAsf(latin1(file.bytes));
-  } catch (error) {
-    throw error instanceof FileError ? error.of(file.name) : error;
-  }
+  return skeletons.find((asf) => stemOf(asf) === stem) ?? subject[0] ?? only ?? null;
 }
 
 function ending(file) {

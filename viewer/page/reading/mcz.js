@@ -1,7 +1,6 @@
 import { decodeStream, openMcz } from "../../mcz/mcz.js";
-import { columnsOf } from "./amc.js";
 import { FileError } from "./file_error.js";
-import { channelNames } from "./skeleton.js";
+import { skeletonOfBones } from "./motion_file.js";
 
 const MOST_VALUES = 5e7; // 400 MB
 
@@ -10,7 +9,8 @@ const MOST_VALUES = 5e7; // 400 MB
  *
  * @param {Uint8Array} bytes
  * @param {Uint8Array[]} models `.mcm` files among which that is which the file may name
- * @param {import("./skeleton.js").Skeleton|null} beside of an AMC that does not have its own
+ * @param {{name: string, bytes: Uint8Array}|null} beside the ASF of an AMC, for where the file has no
+ *     skeleton
  * @param {import("../../mcz/assets.js").Assets} assets
  * @returns {Promise<import("./clip.js").Clip>}
  * @throws {FileError|import("../../mcz/error.js").MczError}
@@ -38,30 +38,33 @@ export async function readMcz(bytes, models, beside, assets) {
   }
   const unit = columns.find(({ kind }) => kind[0] === "r")?.unit;
   const others = mcz.streams.filter((_, i) => i !== main).map((stream) => stream.name);
-  const skeleton = skeletonOf(mcz.skeleton, columns, beside);
+  const radians = unit === "rad";
+  const { names, skeleton } = mcz.skeleton
+    ? ownSkeleton(mcz.skeleton, columns)
+    : await skeletonBeside(columns, beside, radians, assets);
   const notes = [
     skeleton ? "" : "no skeleton in this file: only its curves can be shown; drop the .asf with it",
     mcz.closed ? "" : "the recording was not closed",
     others.length ? `only stream ${name} is shown, not ${others.join(", ")}` : "",
   ];
-  return {
-    names: skeleton && !mcz.skeleton ? channelNames(skeleton) : columns.map((column) => column.name),
-    frames,
-    channels,
-    skeleton,
-    frameTime,
-    angleUnit: unit === "deg" || unit === "rad" ? unit : undefined,
-    notes: notes.filter(Boolean),
-  };
+  const angleUnit = radians || unit === "deg" ? unit : undefined;
+  return { names, frames, channels, skeleton, frameTime, angleUnit, notes: notes.filter(Boolean) };
 }
 
-function skeletonOf(own, columns, beside) {
-  if (own) return { ...own, columns: columns.map(({ joint, kind }) => [joint, kind]) };
-  if (!beside || !columns.every(({ bone }) => bone !== undefined)) return null;
+function ownSkeleton(skeleton, columns) {
+  const places = columns.map(({ joint, kind }) => [joint, kind]);
+  return { names: columns.map(({ name }) => name), skeleton: { ...skeleton, columns: places } };
+}
+
+async function skeletonBeside(columns, asf, radians, assets) {
+  const named = { names: columns.map(({ name }) => name), skeleton: null };
+  if (!asf || !columns.every(({ bone }) => bone !== undefined)) return named;
   const bones = [];
+  let last;
   for (const { bone: name, joint } of columns) {
-    if (bones.at(-1)?.joint === joint) bones.at(-1).count++;
-    else bones.push({ name, joint, count: 1 });
+    if (bones.length && joint === last) bones.at(-1).count++;
+    else bones.push({ name, count: 1 });
+    last = joint;
   }
-  return { ...beside, columns: columnsOf(beside, bones) };
+  return skeletonOfBones(asf, bones, radians, assets);
 }

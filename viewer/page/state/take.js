@@ -7,7 +7,7 @@ const SMOOTHING = 0.6; // seconds over which the way that a camera follows is av
 /** A clip made ready to be played: placed in space, upright, scaled, on the floor. */
 export class Take {
   /**
-   * @param {import("./kinematics.js").PlacedClip} clip
+   * @param {import("../work/placing.js").PlacedClip} clip
    * @throws {FileError} when it has no frames
    */
   constructor(clip) {

@@ -3,7 +3,7 @@ import { Assets } from "../../mcz/assets.js";
 import { embeddedClips } from "../reading/embedded.js";
 import { FileError } from "../reading/file_error.js";
 import { message, readFiles } from "../reading/files.js";
-import { placed } from "../state/kinematics.js";
+import { placed } from "./placing.js";
 
 let assets;
 
@@ -26,7 +26,7 @@ export async function answer({ id, files, text }) {
   const made = [];
   for (const clip of clips) {
     try {
-      made.push(placed(clip));
+      made.push(await placed(clip, assets));
     } catch (error) {
       errors.push(message(error, clip.name));
     }
