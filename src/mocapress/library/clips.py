@@ -9,7 +9,7 @@ from mocapress.errors import ParameterError
 from mocapress.library import names
 
 if TYPE_CHECKING:
-    from mocapress.library.library import Library
+    from mocapress.library.reading import Reading
     from mocapress.motion import Clip
 
 _FACTS = (
@@ -23,7 +23,7 @@ _FACTS = (
 class StoredClip:
     """A clip in a library: facts about it now, its numbers when they are asked for."""
 
-    library: "Library | None" = field(repr=False, compare=False)
+    library: "Reading | None" = field(repr=False, compare=False)
     id: int
     """Stays the clip's as long as it is there, and is never another's."""
     name: str
@@ -44,7 +44,7 @@ class StoredClip:
     labels: tuple[str, ...]
 
     @property
-    def _open(self) -> "Library":
+    def _open(self) -> "Reading":
         assert self.library is not None  # only lists are made without
         return self.library
 
@@ -73,7 +73,7 @@ class StoredClip:
 
 
 def select(
-    library: "Library | None",
+    library: "Reading | None",
     connection: sqlite3.Connection,
     patterns: Sequence[str] = (),
     *,
@@ -101,7 +101,7 @@ def select(
     return [_stored(library, row) for row in rows]
 
 
-def by_id(library: "Library", connection: sqlite3.Connection, clip: int) -> StoredClip:
+def by_id(library: "Reading", connection: sqlite3.Connection, clip: int) -> StoredClip:
     """Give the clip of an id.
 
     Raises
@@ -119,7 +119,7 @@ def by_id(library: "Library", connection: sqlite3.Connection, clip: int) -> Stor
     return _stored(library, row)
 
 
-def _stored(library: "Library | None", row: Sequence[Any]) -> StoredClip:
+def _stored(library: "Reading | None", row: Sequence[Any]) -> StoredClip:
     number, name, kind, frames, channels, time, size, sha256, modified, codec, skeleton, labels = (
         row
     )

@@ -13,7 +13,7 @@ from mocapress.motion import Clip
 from mocapress.motion.kinematics import local_rotations, positions
 
 if TYPE_CHECKING:
-    from mocapress.library.library import Library
+    from mocapress.library.reading import Reading
 
 VALUES, POSITIONS, ROTATIONS = "values", "positions", "rotations"
 
@@ -45,7 +45,7 @@ class Windows:
 
     def __init__(
         self,
-        library: "Library",
+        library: "Reading",
         frames: int,
         *,
         stride: int | None = None,
