@@ -131,7 +131,8 @@ build/check/%: $(wildcard core/check/*) $(kernels) $(headers)
 	@mkdir -p $(@D)
 	$(check_$(*D)) core/check/$(basename $(*F)).cpp \
 	    $(wildcard core/$(basename $(*F))/*.cpp core/$(basename $(*F))_*/*.cpp) \
-	    core/coding/record.cpp core/numbers/line.cpp core/numbers/powers.cpp core/numbers/text.cpp -o $@
+	    core/coding/record.cpp core/motion/kinematics.cpp core/numbers/line.cpp \
+	    core/numbers/powers.cpp core/numbers/text.cpp -o $@
 
 bench: $(VENV)/.built corpus
 	$(BIN)/mocapress bench lossless $(if $(wildcard corpus/.version),corpus/amc/cmu)

@@ -204,7 +204,7 @@ std::string expected(const RowStop& stop, const Bones& bones) {
   if (stop.end == RowEnd::counter_expected || stop.item >= bones.list.size())
     return "the next frame's number, or the end of the file";
   const AmcBone& bone = bones.list[stop.item];
-  const std::string name = decoded_name(bone.word);
+  const std::string name = shown(decoded_name(bone.word));
   if (stop.end == RowEnd::word_differs) return "bone " + name;
   return std::to_string(bone.count) + " numbers for bone " + name;
 }

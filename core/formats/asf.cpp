@@ -179,7 +179,7 @@ class Reader {
       if (!next(line)) return fail(begin, "a bone without end", "end", "the end of the file");
       if (line.key == "end") break;
       if (line.key.starts_with(':'))
-        return fail(line.number, "a bone without end", "end", line.text);
+        return fail(line.number, "a bone without end", "end", quoted(line.text));
       if (line.key == "name") {
         bone.name = joined(line.words);
       } else if (line.key == "direction") {
@@ -239,7 +239,9 @@ class Reader {
       if (!good) break;
       channels.push_back(kind);
     }
-    if (!good) fail(line.number, line.key, "each of tx ty tz rx ry rz l at most once", line.text);
+    if (!good)
+      fail(line.number, shown(line.key), "each of tx ty tz rx ry rz l at most once",
+           quoted(line.text));
   }
 
   void order(const Line& line, std::string_view word, std::string& order) {
@@ -250,13 +252,14 @@ class Reader {
   }
 
   void vector(const Line& line, Vector& vector) {
-    if (line.words.size() < 3) return fail(line.number, line.key, "three numbers", line.text);
+    if (line.words.size() < 3)
+      return fail(line.number, shown(line.key), "three numbers", quoted(line.text));
     for (std::size_t k = 0; k < 3; ++k) number(line, line.words[k], vector[k]);
   }
 
   void number(const Line& line, std::string_view word, double& number) {
     const auto read = finite_number(word);
-    if (!read) return fail(line.number, line.key, "a number", quoted(word));
+    if (!read) return fail(line.number, shown(line.key), "a number", quoted(word));
     number = *read;
   }
 
@@ -323,7 +326,7 @@ class Reader {
       for (const std::size_t i : order) reached[i] = true;
       const auto loose = static_cast<std::size_t>(std::find(reached.begin(), reached.end(), false) -
                                                   reached.begin());
-      return fail(bones_[loose].line, "bone " + decoded_name(bones_[loose].name),
+      return fail(bones_[loose].line, "bone " + shown(decoded_name(bones_[loose].name)),
                   "a way to root in :hierarchy");
     }
     if (in_order) std::sort(order.begin(), order.end());

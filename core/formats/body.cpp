@@ -120,7 +120,7 @@ std::optional<Problem> not_numbers(std::string_view text, const Body& body,
                          std::to_string(row + 1),
                  .expected = "finite numbers",
                  .found = (std::isnan(body.values[first]) ? "nan in " : "infinity in ") +
-                          columns[first % body.columns].name,
+                          shown(columns[first % body.columns].name),
                  .line = line_of(text, offset),
                  .offset = static_cast<std::int64_t>(offset),
                  .name = kNotNumbers};

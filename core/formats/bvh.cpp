@@ -28,13 +28,27 @@ std::vector<std::size_t> words_of_lines(std::string_view text, std::size_t begin
   return counts;
 }
 
+// Whether all lines have so many numbers, more than there are channels.
+bool is_wide(const std::vector<std::size_t>& counts, std::uint64_t frames, std::size_t channels) {
+  const std::size_t width = counts.front();
+  return width > channels && (counts.size() == frames || width % channels != 0) &&
+         std::all_of(counts.begin(), counts.end(), [&](std::size_t n) { return n == width; });
+}
+
 // Whether frames are no lines: all of them wrap alike, or there are several on a line, or all the
-// numbers together are as many as declared.
-bool is_free(std::string_view text, const Hierarchy& hierarchy, std::size_t channels) {
+// numbers together are as many as declared. Finds, too, how many numbers a frame has where all have
+// more of them than channels.
+bool is_free(std::string_view text, const Hierarchy& hierarchy, std::size_t channels,
+             std::size_t& width) {
+  width = channels;
   const auto first = words_of_lines(text, hierarchy.rows_begin, 1);
   if (first.empty() || first.front() == channels) return false;
-  if (first.front() % channels == 0) return true;
   const auto counts = words_of_lines(text, hierarchy.rows_begin, SIZE_MAX);
+  if (is_wide(counts, hierarchy.frames, channels)) {
+    width = first.front();
+    return false;
+  }
+  if (first.front() % channels == 0) return true;
   std::size_t all = 0;
   for (const std::size_t count : counts) all += count;
   if (all % channels == 0 && all / channels == hierarchy.frames) return true;
@@ -96,9 +110,14 @@ MotionFile read_bvh(std::string_view text) {
   }
   made.frame_time = hierarchy.frame_time;
   made.seconds = hierarchy.seconds;
-  made.free = is_free(text, hierarchy, channels);
-  made.body = Body(channels, text.size());
-  Row row(channels);
+  std::size_t width = 0;
+  made.free = is_free(text, hierarchy, channels, width);
+  for (std::size_t k = channels; k < width; ++k) {
+    const std::string kind = 'v' + std::to_string(k - channels + 1);
+    made.columns.push_back({"extra." + kind, -1, kind, ""});
+  }
+  made.body = Body(width, text.size());
+  Row row(width);
   const Reading reading = read_all(
       text, hierarchy.rows_begin, false, made.body, row,
       [&](std::size_t at) { return read_numbers(text, at, made.free, row); },
@@ -108,13 +127,21 @@ MotionFile read_bvh(std::string_view text) {
     return made;
   }
   find_problems(text, reading, hierarchy.frames,
-                std::to_string(channels) + (made.free ? " numbers" : " numbers on a line"), made);
+                std::to_string(width) + (made.free ? " numbers" : " numbers on a line"), made);
+  if (width > channels) {
+    made.problems.push_back({.what = "rows have more numbers than there are channels",
+                             .expected = std::to_string(channels),
+                             .found = std::to_string(width),
+                             .line = line_of(text, hierarchy.rows_begin),
+                             .offset = static_cast<std::int64_t>(hierarchy.rows_begin),
+                             .name = kExtraNumbers});
+  }
   if (auto problem = not_numbers(text, made.body, made.columns))
     made.problems.push_back(std::move(*problem));
   for (std::size_t c = 0; c < channels; ++c) {
     if (made.columns[c].kind[0] != 's') continue;
     made.problems.push_back({.what = "channels that scale are kept, but scale nothing here",
-                             .found = made.columns[c].name,
+                             .found = shown(made.columns[c].name),
                              .name = kScaleChannels});
     break;
   }

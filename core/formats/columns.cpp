@@ -58,9 +58,10 @@ std::string joined(const std::vector<std::string>& words) {
 Problem no_such_bone(const Skeleton& skeleton, const std::string& name) {
   std::string some;
   const std::size_t count = std::min(skeleton.joints.size(), kJointsNamed);
-  for (std::size_t i = 0; i < count; ++i) some += skeleton.joints[i].name + ", ";
-  return {
-      .what = "the skeleton has no bone " + name, .expected = some + "…", .found = quoted(name)};
+  for (std::size_t i = 0; i < count; ++i) some += shown(skeleton.joints[i].name) + ", ";
+  return {.what = "the skeleton has no bone " + shown(name),
+          .expected = some + "…",
+          .found = quoted(name)};
 }
 
 }  // namespace
@@ -114,7 +115,7 @@ std::optional<Problem> bone_columns(const Skeleton* skeleton, std::span<const Bo
         kinds.assign(names.begin(), names.end());
       }
       if (kinds.size() != count) {
-        return Problem{.what = "values of bone " + name,
+        return Problem{.what = "values of bone " + shown(name),
                        .expected = std::to_string(kinds.size()) + " (" + joined(kinds) +
                                    "), as the skeleton has",
                        .found = std::to_string(count)};

@@ -100,7 +100,7 @@ class Reader {
     Words words = words_of(piece);
     const std::string key = lower(words.front());
     words.erase(words.begin());
-    if (waiting_ && key != "{") return fail(at_, "joint " + waiting_->name, "{");
+    if (waiting_ && key != "{") return fail(at_, "joint " + shown(waiting_->name), "{");
     if (key == "motion") return motion();
     if (key == "{") return open();
     if (key == "}") return close();
@@ -231,6 +231,7 @@ class Reader {
   void motion() {
     if (!stack_.empty() || joints().empty())
       return fail(at_, "the hierarchy is not complete", stack_.empty() ? "ROOT" : "}");
+    while (position_ < text_.size() && is_space(text_[position_])) ++position_;
     std::size_t at = position_;
     std::string_view count = declared(at, {"frames", ":"});
     if (count.empty()) return fail(position_, "number of frames", "Frames: and their number");

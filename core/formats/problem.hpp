@@ -22,6 +22,7 @@ inline constexpr std::string_view kUnreadableRows = "unreadable-rows";
 inline constexpr std::string_view kExtraRows = "extra-rows";
 inline constexpr std::string_view kBytesAfterEnd = "bytes-after-end";
 inline constexpr std::string_view kNotNumbers = "not-numbers";
+inline constexpr std::string_view kExtraNumbers = "extra-numbers";
 inline constexpr std::string_view kScaleChannels = "scale-channels";
 
 }  // namespace mocapress

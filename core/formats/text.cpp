@@ -144,21 +144,35 @@ std::optional<std::string> from_utf16(std::string_view bytes) {
   return out;
 }
 
-std::string quoted(std::string_view text) {
+std::string shown(std::string_view text) {
   static constexpr char kDigits[] = "0123456789abcdef";
-  std::string out = "'";
-  for (const char c : utf8_of(text)) {
-    const auto byte = static_cast<unsigned char>(c);
+  std::string out;
+  const std::string utf8 = utf8_of(text);
+  for (std::size_t at = 0; at < utf8.size(); ++at) {
+    const char c = utf8[at];
+    auto byte = static_cast<unsigned char>(c);
+    // Those of ISO 8859-1 have two bytes in UTF-8.
+    const bool upper = byte == 0xC2 && at + 1 < utf8.size() && utf8[at + 1] < '\xa0';
+    if (upper) byte = static_cast<unsigned char>(utf8[++at]);
     if (c == '\n' || c == '\r' || c == '\t') {
       out += c == '\n' ? "\\n" : c == '\r' ? "\\r" : "\\t";
-    } else if (byte < 0x20 || byte == 0x7F) {
+    } else if (byte < 0x20 || byte == 0x7F || upper) {
       out += "\\x";
       out += kDigits[byte >> 4];
       out += kDigits[byte & 15];
     } else {
-      if (c == '\\' || c == '\'') out += '\\';
+      if (c == '\\') out += '\\';
       out += c;
     }
+  }
+  return out;
+}
+
+std::string quoted(std::string_view text) {
+  std::string out = "'";
+  for (const char c : shown(text)) {
+    if (c == '\'') out += '\\';
+    out += c;
   }
   return out + "'";
 }

@@ -33,7 +33,9 @@ bool is_padding(std::string_view rest);
 // and every other file gives nothing.
 std::optional<std::string> from_utf16(std::string_view bytes);
 
-// A text as a message shows it: in quotes, control characters escaped.
+// A text as a message shows it: control characters escaped, so that none reaches a terminal.
+std::string shown(std::string_view text);
+// The same in quotes.
 std::string quoted(std::string_view text);
 // The word at an offset as a message shows it, or that the line or the file ends there.
 std::string found_at(std::string_view text, std::size_t offset);

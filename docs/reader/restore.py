@@ -17,6 +17,7 @@ import zlib
 from pathlib import Path
 
 import c3d
+import table
 from container import Stream, packed, read_file, read_model
 from layout import Layout
 from records import CorruptError
@@ -43,6 +44,8 @@ def restored(data: bytes, model: bytes | None = None) -> bytes:
         if file.format == "c3d":
             others = [decoded(stream, None) for stream in file.streams[1:]]
             original = c3d.Layout(file.layout).printed([rows, *others])
+        elif file.format in ("csv", "trc"):
+            original = table.Layout(file.layout).printed(rows)
         else:
             original = Layout(file, len(rows)).printed(rows)
     codecs = [stream.codec for stream in file.streams]

@@ -119,7 +119,7 @@ def test_json_is_for_machines(walk: Path, tmp_path: Path) -> None:
         (["decompress", "x.diffma.json"], 1, "x.diffma.json: $.channels; expected a value"),
         (["verify", "x.diffma.json"], 3, "$.channels; expected a value; found nothing"),
         (["convert", "walk.amc"], 2, "say what to convert to"),
-        (["compress", "empty"], 2, "no .amc or .asf or .bvh or .c3d files"),
+        (["compress", "empty"], 2, "no .amc or .asf or .bvh or .c3d or .csv"),
         (["compress"], 2, "Missing argument"),
         (["squeeze"], 2, "No such command"),
     ],

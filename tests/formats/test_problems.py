@@ -20,6 +20,9 @@ BVH = (
 )
 
 
+HEAD = BVH[: BVH.index(b"1.0 2.0")]
+
+
 class Case(NamedTuple):
     data: bytes
     names: list[str]
@@ -38,6 +41,15 @@ LOSES_NOTHING = {
     ),
     "no frame declared": Case(
         BVH.replace(b"Frames: 4", b"Frames: 0"), ["extra-rows"], FIRST, (14, "4")
+    ),
+    "rows with more numbers than channels": Case(
+        HEAD + BVH[len(HEAD) :].replace(b"\n", b" 0.5 7\n"), ["extra-numbers"], FIRST, (14, "5")
+    ),
+    "twice as many numbers as channels": Case(
+        HEAD + BVH[len(HEAD) :].replace(b"\n", b" 1 2 3\n"), ["extra-numbers"], FIRST, (14, "6")
+    ),
+    "values that are no numbers": Case(
+        BVH.replace(b"2.5 3.5", b"nan -1.#IND00"), ["not-numbers"], FIRST, (15, "nan in hip.ry")
     ),
     "NULs": Case(
         BVH + b"\0\0\0", ["bytes-after-end"], FIRST, (18, r"3 bytes that begin with '\x00\x00\x00'")
@@ -188,7 +200,6 @@ def test_a_take_with_unreadable_rows_keeps_its_duration(samples: Path, rows: ran
         np.testing.assert_array_equal(read.values[kept], clip.values[kept])
 
 
-HEAD = BVH[: BVH.index(b"1.0 2.0")]
 WRAPPED = {
     "one number a line": HEAD + BVH[len(HEAD) :].replace(b" ", b"\n"),
     "two numbers and one": HEAD + re.sub(rb" (\S+\n)", rb"\n\1", BVH[len(HEAD) :]),

@@ -23,6 +23,7 @@ sys.path += [str(HERE), str(HERE.parent / "codecs"), str(HERE.parent / "formats"
 import c3d_files  # noqa: E402
 import clips  # noqa: E402
 import payloads  # noqa: E402
+import table_files  # noqa: E402
 
 FRAMES = 240
 BVH = """HIERARCHY
@@ -131,6 +132,8 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_dec.c3d": (c3d_files.odd_floats(c3d_files.DEC), "exact:level=2,chunk=60", {}),
     "v1_mips.c3d": (c3d_files.odd_floats(c3d_files.MIPS), "exact:level=3,chunk=60", {}),
     "v1_integers.c3d": (c3d_files.whole_numbers(c3d_files.INTEL), "exact:level=2,chunk=60", {}),
+    "v1_markers.trc": (table_files.trc(table_files.markers()), "exact:level=1,chunk=60", {}),
+    "v1_odd.csv": (table_files.odd_table(), "exact:level=2,chunk=60", {}),
     "v1_mips_integers.c3d": (c3d_files.whole_numbers(c3d_files.MIPS), "exact:level=3,chunk=60", {}),
 }
 # NAME.mcz was coded with the model NAME.mcm, which was learned from the file itself.

@@ -292,7 +292,7 @@ def _compress_plain(source: Source, notes: Mapping[str, str]) -> bytes:
     name, digest = stored_name(source.name), hashlib.sha256(data).digest()
     parts: list[bytes] = []
     writer = MczWriter(parts.append)
-    writer.original(Original("", name, len(data), digest, (), pack(data)))
+    writer.original(Original("", name, len(data), digest, (), pack(data, hard=True)))
     if notes:
         writer.notes(notes)
     writer.end()

@@ -18,7 +18,8 @@ from mocapress.version import __version__
 
 app = typer.Typer(
     cls=Commands,
-    help="Store, play and search motion capture: AMC, ASF and BVH, restored byte for byte.",
+    help="Store, play and search motion capture: AMC, ASF, BVH, C3D, TRC and tables, restored byte "
+    "for byte.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},

@@ -12,16 +12,16 @@ _STORED, _LZMA, _DEFLATE = range(3)
 _LEAST_LZMA, _FITTING = 2**12, 8
 
 
-def pack(data: bytes) -> bytes:
-    """Compress bytes by whichever method makes them smallest."""
+def pack(data: bytes, *, hard: bool = False) -> bytes:
+    """Compress bytes by whichever method makes them smallest; ``hard`` tries all on more."""
     candidates = [(_STORED, data)]
     if len(data) < 2**16:
         deflate = zlib.compressobj(9, zlib.DEFLATED, -15, 9, zdict=_dictionary())
         candidates.append((_DEFLATE, deflate.compress(data) + deflate.flush()))
     # Where the dictionary fits, or for little data, LZMA never wins. Literal context 4 and no
     # position bits suit text, the default suits binary data.
-    if len(data) >= _LEAST_LZMA and len(candidates[-1][1]) * _FITTING > len(data):
-        for text in (True, False) if len(data) < 2**16 else (True,):
+    if hard or (len(data) >= _LEAST_LZMA and len(candidates[-1][1]) * _FITTING > len(data)):
+        for text in (True, False) if len(data) < (2**23 if hard else 2**16) else (True,):
             chain = _lzma_filter(len(data), text=text)
             candidates.append((_LZMA, lzma.compress(data, lzma.FORMAT_RAW, filters=[chain])))
     method, packed = min(candidates, key=lambda candidate: len(candidate[1]))

@@ -29,7 +29,7 @@ __all__ = [
 
 GROUP = "mocapress.formats"
 # Modules whose ``FORMAT`` is asked in this order; an ASF can look like an AMC, too.
-_OWN = ("c3d", "bvh", "asf", "amc")
+_OWN = ("c3d", "bvh", "asf", "amc", "trc", "tables")
 _HEAD = 2**16
 
 

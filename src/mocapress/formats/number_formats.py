@@ -37,12 +37,14 @@ def packed(formats: Sequence[NumberFormat]) -> NDArray[np.uint8]:
 
 def unpacked(rows: NDArray[np.uint8]) -> tuple[NumberFormat, ...]:
     """Give the formats that ``packed`` packs."""
-    known: dict[tuple[int, ...], NumberFormat] = {}
-    for row in map(tuple, np.unique(rows, axis=0).tolist()):
-        kind, digits, exponent_digits, flags = row
-        own = (bool(flags >> bit & 1) for bit in range(len(_FLAGS)))
-        known[row] = NumberFormat(NumberKind(kind), digits, exponent_digits, *own)
-    return tuple(known[tuple(row)] for row in rows.tolist())
+    told = [tuple(row) for row in rows.tolist()]
+    known = {row: _format(*row) for row in set(told)}
+    return tuple(known[row] for row in told)
+
+
+def _format(kind: int, digits: int, exponent_digits: int, flags: int) -> NumberFormat:
+    own = (bool(flags >> bit & 1) for bit in range(len(_FLAGS)))
+    return NumberFormat(NumberKind(kind), digits, exponent_digits, *own)
 
 
 def _flags(f: NumberFormat) -> int:
@@ -65,7 +67,7 @@ def read_format(reader: Reader) -> NumberFormat:
         or (kind == NumberKind.GENERAL and not 1 <= digits <= 17)
     ):
         raise reader.fail("no such number format")
-    return unpacked(np.array([[kind, digits, exponent_digits, flags]], np.uint8))[0]
+    return _format(kind, digits, exponent_digits, flags)
 
 
 def printed(

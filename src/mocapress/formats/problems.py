@@ -16,6 +16,8 @@ BYTES_AFTER_END = "bytes-after-end"
 """Something that is no row after the last row."""
 NOT_NUMBERS = "not-numbers"
 """Values such as ``nan`` and ``inf``."""
+EXTRA_NUMBERS = "extra-numbers"
+"""More numbers in every row than there are channels; they become columns of no joint."""
 SCALE_CHANNELS = "scale-channels"
 """Channels that scale; kinematics leaves them out."""
 

@@ -21,7 +21,7 @@ from mocapress.codecs.exact.columns import Told
 from mocapress.codecs.exact.coupling_search import find_couplings
 from mocapress.codecs.exact.header import pack_header, unpack_header
 from mocapress.codecs.exact.roles import Role, Roles, find_roles
-from mocapress.codecs.exact.skeletons import skeleton_of
+from mocapress.codecs.exact.skeletons import NONE, OWN_COUPLINGS, assumed, skeleton_of
 from mocapress.codecs.exact.start import Learned, Start, model_of, start_of
 from mocapress.errors import CorruptError, ParameterError
 from mocapress.motion import Column, Skeleton, Stream
@@ -29,6 +29,8 @@ from mocapress.motion import Column, Skeleton, Stream
 _MOST_FRAMES = 1 << 20
 _FAST_LEVELS = 2
 """Up to this level couplings are not looked for: core/exact_fast/codec.hpp has no use for them."""
+_TELLING = 2
+"""Laws of a skeleton that tell that columns without names are its channels."""
 _TOGETHER = 1024
 """Clips of more columns are coded in parts of so many, one behind the other."""
 
@@ -155,11 +157,16 @@ class Exact(Codec):
 def _roles(values: NDArray[np.float64], columns: Sequence[Column], level: int) -> Roles:
     if level <= _FAST_LEVELS:
         return find_roles(values, lambda _, __: [])
-    return find_roles(
+    joints = assumed(columns)
+    found = find_roles(
         values,
-        lambda predicted, lines: find_couplings(values, columns, predicted, lines),
-        skeleton=skeleton_of(columns),
+        lambda predicted, lines: find_couplings(values, joints, predicted, lines),
+        skeleton=skeleton_of(joints),
     )
+    # A skeleton that no name speaks for must show by its laws.
+    if joints is columns or len(set(found.couplings) & set(OWN_COUPLINGS)) >= _TELLING:
+        return found
+    return replace(found, skeleton=NONE)
 
 
 class _Coder:

@@ -13,6 +13,7 @@ from mocapress.codecs.exact.tables import (
     Tables,
     coded,
     decoded,
+    has_floats,
     read_tables,
     write_tables,
 )
@@ -42,9 +43,10 @@ class Told:
         masks_of, table_of = [], []
         for column, own in enumerate(np.ascontiguousarray(values.T)):
             left, gap = masks.take_gaps(own)
-            left, zero = masks.take_zeros(left, -0.0)
-            table = tables.find(left)
-            if not table and not zero and not (np.rint(left) == left).all():
+            floats = has_floats(left)
+            left, zero = masks.take_zeros(left, -0.0) if floats else (left, 0)
+            table = tables.find(left) if floats else 0
+            if floats and not table and not zero and not (np.rint(left) == left).all():
                 left, zero = masks.take_zeros(left, 0.0)
                 table = tables.find(left) if zero else 0
             numbers[column] = coded(tables.made[table - 1], left) if table else left

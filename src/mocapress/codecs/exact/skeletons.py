@@ -56,3 +56,14 @@ def skeleton_of(columns: Sequence[Column]) -> int:
         and all(column.unit == "deg" for column in columns if column.kind[:1] == "r")
     )
     return CMU if is_cmu else NONE
+
+
+def assumed(columns: Sequence[Column]) -> Sequence[Column]:
+    """Give columns of no joints those of a skeleton that has as many channels, to be tried."""
+    if len(columns) != CHANNELS[CMU] or any(column.joint >= 0 for column in columns):
+        return columns
+    return [
+        Column(f"{joint}.{kind}", joint, kind, "deg" if kind[0] == "r" else "length")
+        for joint, kinds in enumerate(_JOINTS)
+        for kind in kinds.split()
+    ]

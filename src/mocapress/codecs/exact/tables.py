@@ -120,8 +120,8 @@ class Tables:
         self.made: list[Table] = []
 
     def find(self, column: Values) -> int:
-        """Give the number of a column's table, from 1 on; it may be a new one. 0 for none."""
-        if len(column) < 2 or not _has_floats(column):
+        """Give the number of the table of a column of floats, from 1 on, maybe a new one; or 0."""
+        if len(column) < 2:
             return 0
         distinct = np.unique(column[np.isfinite(column)]) + 0.0
         if len(distinct) < 2 or (distinct[0] % 1 == 0 and (np.diff(distinct) == 1).all()):
@@ -148,7 +148,7 @@ class Tables:
         return number
 
 
-def _has_floats(column: Values) -> bool:
+def has_floats(column: Values) -> bool:
     """Tell whether a column's numbers are float32."""
     with np.errstate(over="ignore", invalid="ignore"):
         again = column.astype(np.float32).astype(np.float64)

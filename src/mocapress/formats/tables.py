@@ -1,0 +1,166 @@
+"""Tables of numbers: CSV and TSV of any program, and OpenSim's MOT and STO."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress.errors import FormatError
+from mocapress.formats.contract import Format, Split
+from mocapress.formats.layout import NO_ROWS
+from mocapress.formats.table_layout import (
+    NUMBERS,
+    SAME,
+    SERIES,
+    TableLayout,
+    read_layout,
+    series,
+    split_table,
+)
+from mocapress.motion import Clip, Column, Skeleton, Stream
+from mocapress.motion.clip import FrameTime
+from mocapress.motion.columns import numbered_columns
+
+CSV = "csv"
+"""Id of the format."""
+TABLE = "table"
+"""Name of the stream that holds the columns of numbers."""
+_ROWS_AT_LEAST = 3
+_TIME = re.compile(r"(time|timestamp|t|seconds|time *\(?s(econds)?\)?)\Z", re.IGNORECASE)
+
+Values = NDArray[np.float64]
+
+
+def split(data: bytes, _skeleton: Skeleton | None, file: str | None, *, kind: str = CSV) -> Split:
+    """Take a table apart.
+
+    Raises
+    ------
+    FormatError
+        When it is no table of numbers.
+
+    """
+    layout, values, _ = split_table(data, kind, file)
+    if not values.shape[1]:
+        raise FormatError("no column of numbers", file=file, expected="a table of numbers")
+    stream = Stream(values, numbered_columns(values.shape[1], ("v",)), time_of(layout))
+    clip = Clip({TABLE: stream}, None, Path(file).stem if file else "")
+    return Split(clip, NO_ROWS, (), layout)
+
+
+def header_lines(layout: TableLayout) -> list[list[str]]:
+    """Give the cells of the header's lines, without quotes."""
+    lines = layout.header.split(layout.line_break)[:-1]
+    return [
+        [text(cell).strip().strip('"') for cell in line.split(layout.delimiter)] for line in lines
+    ]
+
+
+def text(data: bytes) -> str:
+    """Give a text, which may be in UTF-8 or ISO 8859-1."""
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def names_of(layout: TableLayout) -> list[str]:
+    """Give the names of all columns: the last line of the header that has one for each."""
+    width = len(layout.columns)
+    for cells in reversed(header_lines(layout)):
+        named = cells[:width]
+        if len(named) == width and sum(map(bool, named)) * 2 > width:
+            return [name or f"column {i + 1}" for i, name in enumerate(named)]
+    return [f"column {i + 1}" for i in range(width)]
+
+
+def time_of(layout: TableLayout) -> FrameTime:
+    """Give the seconds per row, of a column of times."""
+    for name, column in zip(names_of(layout), layout.columns, strict=True):
+        if column.kind == SERIES and _TIME.match(name):
+            return Fraction(column.step)
+    return None
+
+
+def full_values(layout: TableLayout, values: Values) -> dict[int, Values]:
+    """Give the numbers of all columns that hold such, by their place in the table.
+
+    Parameters
+    ----------
+    layout
+        Of the table.
+    values
+        (F, C) of the stream; where these are not all rows, columns that are series are left out.
+
+    """
+    found = {}
+    stored = iter(np.ascontiguousarray(values.T))
+    for place, column in enumerate(layout.columns):
+        if column.kind == NUMBERS:
+            found[place] = next(stored)
+        elif column.kind == SAME:
+            found[place] = np.full(len(values), _number(column.text))
+        elif column.kind == SERIES and len(values) == layout.rows:
+            found[place] = series(column.first, column.step, layout.rows)
+    return found
+
+
+def _number(cell: bytes) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        return float("nan")
+
+
+def described(layout: Any, clip: Clip) -> Clip:
+    """Give the columns of numbers, with their names."""
+    stream = clip.streams[TABLE]
+    values, names = full_values(layout, stream.values), names_of(layout)
+    kept = {
+        place: column
+        for place, column in values.items()
+        if layout.columns[place].kind != SAME or not np.isnan(column).all()
+    }
+    columns = named_columns([names[place] for place in kept])
+    matrix = np.stack(list(kept.values()), axis=1)
+    return replace(clip, streams={TABLE: Stream(matrix, columns, stream.frame_time)})
+
+
+def named_columns(names: Sequence[str]) -> tuple[Column, ...]:
+    """Give columns of names; one that is there again is ``name#2``."""
+    seen: dict[str, int] = {}
+    columns = []
+    for place, name in enumerate(names):
+        count = seen[name] = seen.get(name, 0) + 1
+        columns.append(Column(name if count == 1 else f"{name}#{count}", place, "v"))
+    return tuple(columns)
+
+
+def _recognised(head: bytes) -> bool:
+    """Tell a table by rows of equally many numbers, between tabs, commas or semicolons."""
+    if b"\0" in head:
+        return False
+    whole = head[: head.rfind(b"\n") + 1]
+    try:
+        layout, values, _ = split_table(whole, CSV, None)
+    except FormatError:
+        return False
+    enough = layout.rows >= _ROWS_AT_LEAST and values.shape[1] > 1 and not layout.verbatim
+    return enough and layout.delimiter != b" "
+
+
+FORMAT = Format(
+    id=CSV,
+    name="CSV",
+    suffixes=(".csv", ".tsv", ".mot", ".sto"),
+    recognises=_recognised,
+    split=split,
+    read_layout=partial(read_layout, kind=CSV),
+    describe=described,
+)

@@ -1,0 +1,152 @@
+"""TRC: marker trajectories as a table, of Motion Analysis and those who came after."""
+
+from dataclasses import replace
+from decimal import Decimal, InvalidOperation
+from fractions import Fraction
+from functools import partial
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress.errors import FormatError, UnsupportedError
+from mocapress.formats.c3d_parameters import POINTS
+from mocapress.formats.contract import Format, Split
+from mocapress.formats.number_formats import SHORTEST, printed
+from mocapress.formats.problems import EXTRA_ROWS, MISSING_ROWS, Problem
+from mocapress.formats.table_layout import TableLayout, read_layout
+from mocapress.formats.tables import TABLE, full_values, header_lines
+from mocapress.formats.tables import split as split_table
+from mocapress.motion import Clip, Column, Skeleton, Stream
+from mocapress.motion.clip import short_decimal
+
+Values = NDArray[np.float64]
+
+_BEFORE = 2
+"""Columns before the markers: the frame's number and the time."""
+_WORDS = ("x", "y", "z")
+
+
+def split(data: bytes, skeleton: Skeleton | None, file: str | None) -> Split:
+    """Take a file apart.
+
+    Raises
+    ------
+    FormatError
+        When there are no rows of numbers in it.
+
+    """
+    parts = split_table(data, skeleton, file, kind="trc")
+    layout = parts.stored
+    assert isinstance(layout, TableLayout)
+    facts = _facts(layout)
+    clip = parts.clip
+    try:
+        rate = Fraction(Decimal(facts.get("DataRate", "")))
+    except (InvalidOperation, ValueError):
+        rate = Fraction(0)
+    stream = clip.streams[TABLE]
+    if rate > 0:
+        stream = replace(stream, frame_time=1 / rate)
+    clip = replace(clip, streams={POINTS: stream})
+    return parts._replace(clip=clip, problems=tuple(_problems(layout, facts)))
+
+
+def _facts(layout: TableLayout) -> dict[str, str]:
+    """Give what the header says: names in one line, values in the next."""
+    lines = header_lines(layout)
+    for names, values in pairwise(lines):
+        if names[0] == "DataRate":
+            return {name: value for name, value in zip(names, values, strict=False) if name}
+    return {}
+
+
+def _problems(layout: TableLayout, facts: dict[str, str]) -> list[Problem]:
+    told = facts.get("NumFrames", "")
+    if not told.isdigit() or int(told) == layout.rows:
+        return []
+    name = MISSING_ROWS if layout.rows < int(told) else EXTRA_ROWS
+    what = "fewer rows than declared" if name == MISSING_ROWS else "more rows than declared"
+    return [Problem.of(name, what, expected=told, found=str(layout.rows))]
+
+
+def described(layout: Any, clip: Clip) -> Clip:
+    """Give the markers: x, y and z of each, with the names and the unit of the header."""
+    stream = clip.streams[POINTS]
+    values = full_values(layout, stream.values)
+    lines = header_lines(layout)
+    labels = next((line for line in reversed(lines) if line[0].startswith("Frame")), [])
+    names = [name for name in labels[_BEFORE:] if name]
+    places = [place for place in sorted(values) if place >= _BEFORE]
+    count = min(len(names) or len(places) // 3, len(places) // 3)
+    if not count:
+        raise FormatError("no markers in the table", expected="three columns for each")
+    kept = places[: 3 * count]
+    unit = _facts(layout).get("Units", "")
+    columns = tuple(
+        Column(
+            f"{names[i // 3] if names else i // 3 + 1}.{_WORDS[i % 3]}", i // 3, _WORDS[i % 3], unit
+        )
+        for i in range(len(kept))
+    )
+    matrix = np.stack([values[place] for place in kept], axis=1)
+    return replace(clip, streams={POINTS: Stream(matrix, columns, stream.frame_time)})
+
+
+def fit(clip: Clip) -> Clip:
+    """Give a clip of points alone.
+
+    Raises
+    ------
+    UnsupportedError
+        When it has none.
+
+    """
+    if POINTS not in clip.streams:
+        raise UnsupportedError("a TRC needs points")
+    return replace(clip, streams={POINTS: clip.streams[POINTS]}, skeleton=None)
+
+
+def write(clip: Clip) -> dict[str, bytes]:
+    """Print a clip that was made to fit; missing points are blank."""
+    stream = clip.streams[POINTS]
+    time = Fraction(stream.frame_time or 0)
+    rate = str(short_decimal(1 / time)) if time else "0"
+    labels = [column.name.rpartition(".")[0] for column in stream.columns[::3]]
+    unit = stream.columns[0].unit or "mm"
+    names = ("DataRate", "CameraRate", "NumFrames", "NumMarkers", "Units")
+    more = ("OrigDataRate", "OrigDataStartFrame", "OrigNumFrames")
+    frames = str(stream.frames)
+    lines = [
+        ["PathFileType", "4", "(X/Y/Z)", f"{clip.name or 'clip'}.trc"],
+        [*names, *more],
+        [rate, rate, frames, str(len(labels)), unit, rate, "1", frames],
+        ["Frame#", "Time", *(cell for label in labels for cell in (label, "", ""))],
+        ["", "", *(f"{axis}{i + 1}" for i in range(len(labels)) for axis in "XYZ")],
+        [],
+    ]
+    head = "\n".join("\t".join(cells) for cells in lines) + "\n"
+    cells = [
+        [cell if cell != b"nan" else b"" for cell in printed(row, SHORTEST)]
+        for row in stream.values
+    ]
+    moments: Values = np.arange(stream.frames, dtype=np.float64) * float(time)
+    times = printed(moments, SHORTEST)
+    rows = [
+        b"\t".join([str(i + 1).encode(), times[i], *row]) + b"\n" for i, row in enumerate(cells)
+    ]
+    return {".trc": head.encode() + b"".join(rows)}
+
+
+FORMAT = Format(
+    id="trc",
+    name="TRC",
+    suffixes=(".trc",),
+    recognises=lambda head: head[:12].strip(b'"').startswith(b"PathFileType"),
+    split=split,
+    fit=fit,
+    write=write,
+    read_layout=partial(read_layout, kind="trc"),
+    describe=described,
+)

@@ -1,0 +1,125 @@
+"""Tables of numbers come back byte for byte in every dialect, and say what they hold."""
+
+import random
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from table_files import markers, odd_table, trc
+
+import mocapress as mp
+from mocapress.formats.table_layout import NUMBERS, SERIES, TableLayout, read_layout
+from mocapress.source import Source
+
+SAMPLE = Path(__file__).parents[2] / "samples/cmu_01_01.amc"
+
+
+def layout_of(data: bytes, name: str = "a.csv") -> TableLayout:
+    """Take a table apart, and see that it comes back, by way of the stored layout."""
+    parts = Source(data, name).split()
+    assert isinstance(parts.stored, TableLayout)
+    again = read_layout(parts.stored.record(), parts.stored.format)
+    assert again.join([parts.clip.values]) == data
+    return parts.stored
+
+
+@pytest.mark.parametrize("delimiter", ["\t", ",", ";"])
+@pytest.mark.parametrize("line_break", ["\n", "\r\n"])
+@pytest.mark.parametrize("missing", ["", "NaN", "nan"])
+def test_markers_of_every_dialect(delimiter: str, line_break: str, missing: str) -> None:
+    places = markers()
+    data = trc(places, delimiter=delimiter, line_break=line_break, missing=missing)
+    layout_of(data, "walk.trc")
+    blob = mp.compress(data)
+    assert mp.decompress(blob) == data
+    for clip in (mp.read(data), mp.load(blob)):
+        found = clip.streams["points"]
+        assert np.allclose(found.values, np.round(places, 5), equal_nan=True)
+        assert [column.name for column in found.columns[:4]] == ["M0.x", "M0.y", "M0.z", "M1.x"]
+        assert {column.unit for column in found.columns} == {"mm"}
+        assert found.frame_time == Fraction(1, 120)
+
+
+@pytest.mark.parametrize("number", ["{!r}", "{:.3f}", "{:.6g}", "{:.4e}", "{:.17g}", "{:.0f}"])
+def test_numbers_of_every_format(number: str) -> None:
+    places = markers()
+    data = trc(places, number=number)
+    layout = layout_of(data, "walk.trc")
+    assert sum(len(column.others) for column in layout.columns) == 0
+    assert mp.decompress(mp.compress(data)) == data
+
+
+def test_counters_and_times_are_no_numbers_to_code() -> None:
+    layout = layout_of(trc(markers()), "walk.trc")
+    assert [column.kind for column in layout.columns[:3]] == [SERIES, SERIES, NUMBERS]
+    for start, rate, decimals in ((0, 100, 3), (17, 59.94, 6), (2000, 250, 5)):
+        rows = [f"{(start + i) / rate:.{decimals}f}\t{i % 7}.5\t{i % 3}.1" for i in range(200)]
+        layout = layout_of("\n".join(["time\ta\tb", *rows]).encode())
+        assert layout.columns[0].kind == SERIES
+        assert not layout.columns[0].others
+
+
+def test_a_table_of_all_sorts_of_columns() -> None:
+    data = odd_table()
+    layout = layout_of(data)
+    assert layout.verbatim == {61: b"broken,row"}
+    clip = mp.read(Path(__file__).parents[1] / "golden/v1_odd.csv")
+    assert clip.frame_time == Fraction(1, 50)
+    assert np.isnan(clip.values[50]).any()
+    assert mp.decompress(mp.compress(data)) == data
+
+
+def test_the_same_numbers_cost_the_same_in_a_table() -> None:
+    clip = mp.read(SAMPLE)[:1024]
+    rows = "".join("\t".join(f"{x:.6g}" for x in row) + "\n" for row in clip.values)
+    own = len(mp.compress(clip))
+    assert len(mp.compress(rows.encode())) < 1.03 * own
+
+
+def test_frames_that_are_missing_are_named() -> None:
+    data = trc(markers(), declared=200)
+    with pytest.raises(mp.FormatError, match="fewer rows than declared; expected 200; found 150"):
+        mp.read(data)
+    with pytest.warns(mp.MotionWarning, match="fewer rows"):
+        assert mp.read(data, strict=False).frames == 150
+    assert mp.decompress(mp.compress(data)) == data
+
+
+def test_columns_and_rates_of_a_table_without_a_suffix() -> None:
+    rows = [f"{i / 200:.3f}\t{i * i % 91}.25\t{i % 13}" for i in range(100)]
+    clip = mp.read("\n".join(["time\tforce\tcount", *rows]).encode())
+    assert [column.name for column in clip.columns] == ["time", "force", "count"]
+    assert clip.frame_time == Fraction(1, 200)
+    assert clip.values[10].tolist() == [0.05, 9.25, 10]
+
+
+def test_what_is_no_table_of_numbers_goes_the_general_way() -> None:
+    for data in (b"name,town\nA,B\nC,D\n", b"1 2 3", b"", b"\n\n", b"1\t2\n" * 2, b"a\tb\tc"):
+        assert mp.decompress(mp.compress(data)) == data
+        if b"\t2" not in data:
+            with pytest.raises(mp.FormatError):
+                mp.read(data)
+
+
+def test_damaged_tables_come_back() -> None:
+    whole = trc(markers(40))
+    chosen = random.Random(1)
+    for _ in range(60):
+        data = bytearray(whole)
+        for _ in range(chosen.randrange(1, 6)):
+            data[chosen.randrange(len(data))] = chosen.choice(b"\t\n\r x-9.\0\xff")
+        cut = bytes(data[: chosen.randrange(len(data))])
+        assert mp.decompress(mp.compress(cut)) == cut
+
+
+def test_markers_are_written(tmp_path: Path) -> None:
+    clip = mp.read(trc(markers()))
+    mp.write(clip, tmp_path / "again.trc")
+    again = mp.read(tmp_path / "again.trc")
+    assert np.array_equal(again.values, clip.values, equal_nan=True)
+    assert again.columns == clip.columns
+    assert again.frame_time == clip.frame_time
+    mp.write(clip, tmp_path / "again.c3d")
+    floats = mp.read(tmp_path / "again.c3d").streams["points"].values
+    assert np.allclose(floats, clip.values, equal_nan=True, rtol=1e-6)
