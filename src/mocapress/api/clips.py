@@ -59,7 +59,7 @@ def compress_clip(
         writer.chunk(chunk)
     writer.end()
     blob = b"".join(parts)
-    opened = Opened(Source(blob), [model] if model else [])
+    opened = Opened(Source(blob, limit=None), [model] if model else [])
     loss = None
     for index, (name, stream) in enumerate(clip.streams.items()):
         rows = opened.rows(index).values

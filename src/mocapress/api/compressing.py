@@ -273,7 +273,7 @@ def _checked(blob: bytes, data: bytes, codec: Codec, clip: Clip, model: Model | 
     """Decode a file and compare: bytes of a lossless codec, else values."""
     failure = "the file does not come back"
     try:
-        opened = Opened(Source(blob), [model] if model else [])
+        opened = Opened(Source(blob, limit=None), [model] if model else [])
         rows = opened.rows()
         original = opened.mcz.original
         assert original is not None

@@ -99,11 +99,14 @@ def read_head(content: bytes) -> Head:
     """
     reader = Reader(unpack(content, "head", limits.UNPACKED), "head")
     skeleton = read_skeleton(reader)
-    streams = []
+    streams: list[StreamHead] = []
+    left = limits.COLUMNS
     for _ in range(reader.integer(limits.STREAMS)):
         name, kind, description = reader.text(), reader.text(), reader.bytes()
         if kind == CHANNELS:
-            streams.append(_read_stream(Reader(description, f"stream {name!r}"), name, skeleton))
+            own = Reader(description, f"stream {name!r}")
+            streams.append(_read_stream(own, name, skeleton, left))
+            left -= len(streams[-1].columns)
         else:
             streams.append(StreamHead(name, 0, None, (), CodecSpec("", {}), kind=kind))
     reader.end()
@@ -131,10 +134,12 @@ def _write_stream(writer: Writer, stream: StreamHead, skeleton: Skeleton | None)
     writer.bytes(stream.header)
 
 
-def _read_stream(reader: Reader, name: str, skeleton: Skeleton | None) -> StreamHead:
+def _read_stream(
+    reader: Reader, name: str, skeleton: Skeleton | None, most_columns: int
+) -> StreamHead:
     frames = reader.integer()
     frame_time = _read_time(reader)
-    columns: Columns = read_columns(reader, skeleton)
+    columns: Columns = read_columns(reader, skeleton, most_columns)
     codec = _read_codec(reader)
     model, header = reader.bytes(), reader.bytes()
     reader.end()

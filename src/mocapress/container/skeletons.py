@@ -11,8 +11,13 @@ _NO_AXIS = ((0.0, 0.0, 0.0), "xyz")
 
 def is_storable(skeleton: Skeleton) -> bool:
     """Tell whether a skeleton has only channels that a file can name."""
-    return len(skeleton.joints) <= limits.JOINTS and all(
-        set(joint.channels) <= set(_KINDS) for joint in skeleton.joints
+    joints = skeleton.joints
+    return (
+        len(joints) <= limits.JOINTS
+        and sum(len(joint.ends) for joint in joints) <= limits.ENDS
+        and sum(len(joint.channels) for joint in joints) <= limits.COLUMNS
+        and len(skeleton.metadata) <= limits.FACTS
+        and all(set(joint.channels) <= set(_KINDS) for joint in joints)
     )
 
 
@@ -115,14 +120,23 @@ def _read_skeleton(reader: Reader) -> Skeleton | None:
     flags = reader.integer(31)
     name = reader.text()
     metadata = {}
-    for _ in range(reader.count(2)):
+    for _ in range(reader.integer(limits.FACTS)):
         key = reader.text()
         metadata[key] = reader.text()
     length_unit = reader.double() if flags & _LENGTH_UNIT else None
     names = [reader.text() for _ in range(count)]
     parents = [index - 1 - reader.integer(index) for index in range(count)]
-    channels = [tuple(_word(reader, code) for code in reader.bytes()) for _ in range(count)]
-    ends = [reader.count(1) for _ in range(count)]
+    channels: list[tuple[str, ...]] = []
+    left = limits.COLUMNS
+    for _ in range(count):
+        codes = reader.raw(reader.integer(left))
+        left -= len(codes)
+        channels.append(tuple(_word(reader, code) for code in codes))
+    ends: list[int] = []
+    left = limits.ENDS
+    for _ in range(count):
+        ends.append(reader.integer(left))
+        left -= ends[-1]
     vectors = _vectors(reader, count + sum(ends))
     orders, axes = ["xyz"] * count, [(0.0, 0.0, 0.0)] * count
     if flags & _AXES:
