@@ -53,16 +53,16 @@ def describe_model(model: Model, size: int) -> dict[str, Any]:
     }
 
 
-def describe_json(blob: bytes) -> dict[str, Any]:
+def describe_json(source: Source) -> dict[str, Any]:
     """Describe a DiffMA JSON, packed or not."""
-    document = diffma_json.open_json(blob)
-    clip = diffma_json.json_to_clip(blob)
+    document = diffma_json.open_json(source.data)
+    clip = diffma_json.json_to_clip(source)
     bounds = sorted({plan.bound for plan in document.plans})
     orders = sorted({plan.order for plan in document.plans})
     facts: dict[str, Any] = {
         "format": "diffma.json",
         "lossless": False,
-        "compressed_bytes": len(blob),
+        "compressed_bytes": source.size,
         "bits": document.coding.bits,
         "window": document.coding.window,
         "bounds": " to ".join(f"{bound:g}" for bound in dict.fromkeys(bounds[:1] + bounds[-1:])),
@@ -72,7 +72,7 @@ def describe_json(blob: bytes) -> dict[str, Any]:
     }
     facts |= describe_clip(clip)
     if clip.values.size:
-        facts["bits_per_sample"] = 8 * len(blob) / clip.values.size
+        facts["bits_per_sample"] = 8 * source.size / clip.values.size
     return facts
 
 

@@ -20,7 +20,14 @@ from typing import BinaryIO, TypeVar
 import numpy as np
 
 from mocapress import formats
-from mocapress.errors import FormatError, MocapressError, MotionWarning, ParameterError
+from mocapress.errors import (
+    CorruptError,
+    FormatError,
+    MocapressError,
+    MotionWarning,
+    ParameterError,
+    UnsupportedError,
+)
 from mocapress.formats import Format, Split
 from mocapress.formats.problems import Problem
 from mocapress.motion import Clip, Skeleton
@@ -35,6 +42,8 @@ JSON_SUFFIXES = (".diffma.json", ".diffma.json.xz")
 _MAGICS = {b"\x89MCZ": MCZ, b"\x89MCM": MCM}
 _XZ = b"\xfd7zXZ\x00"
 _HEAD = 2**16
+LIMIT = 2**32
+"""Bytes that may be restored from a source, unless the user says otherwise."""
 
 
 GIVEN, SAME_NAME, SUBJECT = "given", "same name", "subject"
@@ -68,6 +77,8 @@ class Source:
     look
         Finds the skeleton of a file that does not lie in a folder: given the suffixes of skeletons
         and those of the file's format.
+    limit
+        Bytes that may be restored from it: of a file, or of numbers, 8 each; None for any.
 
     Raises
     ------
@@ -81,7 +92,10 @@ class Source:
         named: Named,
         name: str | None = None,
         look: "Callable[[tuple[str, ...], tuple[str, ...]], Beside | None] | None" = None,
+        *,
+        limit: int | None = LIMIT,
     ) -> None:
+        self.limit = limit
         self.path = Path(named) if isinstance(named, str | Path) else None
         self.name = _name(named) if name is None else name
         self.used: Beside | None = None
@@ -138,6 +152,42 @@ class Source:
             parts.append(part)
             start += len(part)
         return b"".join(parts) if len(parts) != 1 else parts[0]
+
+    def allow(self, size: int) -> None:
+        """See that so many bytes may be restored.
+
+        Raises
+        ------
+        UnsupportedError
+            When they are more than the limit.
+
+        """
+        if self.limit is not None and size > self.limit:
+            raise UnsupportedError(
+                "more would be restored than the limit allows (--limit, limit=)",
+                file=self.name or None,
+                expected=f"at most {self.limit} bytes",
+                found=str(size),
+            )
+
+    def printed(self, print_file: Callable[[int], bytes], most: int) -> bytes:
+        """Print a file of at most so many bytes, and of no more than may be restored.
+
+        Raises
+        ------
+        CorruptError
+            When it would be longer.
+        UnsupportedError
+            When it would be longer than the limit.
+
+        """
+        if self.limit is None or most <= self.limit:
+            return print_file(most)
+        try:
+            return print_file(self.limit)
+        except CorruptError:
+            self.allow(self.limit + 1)
+            raise
 
     @cached_property
     def data(self) -> bytes:

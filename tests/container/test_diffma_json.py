@@ -83,7 +83,7 @@ def test_files_come_back_with_the_decoded_values(samples: Path, name: str, codec
     assert source.skeleton is not None
     assert np.allclose(mp.positions(clip.with_values(source.values)), mp.positions(source))
 
-    kind, back = diffma_json.json_to_file(text)
+    kind, back = diffma_json.json_to_file(Source(text))
     assert name.endswith(kind)
     assert len(back.splitlines()) == len((samples / name).read_bytes().splitlines())
     assert mp.decompress(text) == back
@@ -96,7 +96,7 @@ def test_a_coarser_level_is_what_a_player_asked_for(samples: Path) -> None:
     text = mp.to_json(source, "diffma:bound=2,levels=16/64")
     for asked, bound in ((None, 2), (10, 2), (16, 16), (63, 16), (1000, 64)):
         alone = mp.load(mp.to_json(source, f"diffma:bound={bound}"))
-        found = diffma_json.json_to_clip(text, bound=asked)
+        found = diffma_json.json_to_clip(Source(text), bound=asked)
         assert found.values.tobytes() == alone.values.tobytes()
 
 

@@ -15,6 +15,7 @@ from playwright.sync_api import Browser
 import mocapress as mp
 from mocapress.container import diffma_json
 from mocapress.motion.columns import skeleton_columns
+from mocapress.source import Source
 from mocapress.viewer import embed, page
 
 GOLDEN = Path(__file__).parents[1] / "golden"
@@ -301,7 +302,7 @@ def test_the_browser_decodes_bit_for_bit(
     modules = [[k, v] for k, v in page.modules().items() if k.startswith("diffma/")]
     visit.page.goto("about:blank")
     bits = visit.page.evaluate(DECODE, [modules, text.decode()])
-    expected = diffma_json.json_to_clip(text).values
+    expected = diffma_json.json_to_clip(Source(text)).values
     np.testing.assert_array_equal(
         np.array(bits, dtype=np.uint64).T, np.ascontiguousarray(expected).view(np.uint64)
     )

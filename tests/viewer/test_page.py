@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 import mocapress as mp
 from mocapress.cli.app import app
 from mocapress.container import diffma_json
+from mocapress.source import Source
 from mocapress.viewer import embed, page
 
 
@@ -45,7 +46,7 @@ def test_an_exported_page_keeps_its_stated_error(
     assert result.exit_code == 0
     assert f"{max_error:g}" in result.stdout
     (made,) = embedded(target.read_text())
-    decoded = diffma_json.json_to_clip(json.dumps(made["diffma"]).encode())
+    decoded = diffma_json.json_to_clip(Source(json.dumps(made["diffma"]).encode()))
     clip = mp.read(samples / name)
     assert 0 < np.abs(decoded.values - clip.values).max() <= max_error
     assert made["maxError"] == max_error

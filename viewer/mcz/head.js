@@ -1,7 +1,7 @@
 import { Record } from "./record.js";
 
 // docs/format.md, "Limits".
-const MOST = { streams: 256, parameters: 64, joints: 2 ** 16, columns: 2 ** 20, kinds: 64 };
+const MOST = { streams: 256, parameters: 64, joints: 2 ** 16, columns: 2 ** 18, kinds: 64 };
 const KINDS = ["tx", "ty", "tz", "rx", "ry", "rz", "l", "sx", "sy", "sz"];
 const MODEL_NAME = 32;
 const MOST_DIGITS = 40;

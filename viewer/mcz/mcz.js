@@ -6,7 +6,7 @@ import { readHead } from "./head.js";
 import { unpack } from "./packing.js";
 import { readSections, TAG } from "./sections.js";
 
-const MOST_UNPACKED = 2 ** 26;
+const MOST_UNPACKED = 2 ** 24;
 
 /**
  * @typedef {Object} Mcz
@@ -69,7 +69,7 @@ function checkValues(streams, chunks, length) {
     const frames = chunks[i].reduce((sum, chunk) => sum + chunk.frames, 0);
     values += frames * Math.max(columns.length, 1);
   });
-  const most = 2 ** 24 + 2 ** 12 * length;
+  const most = 2 ** 22 + 2 ** 12 * length;
   if (values > most) {
     throw new MczError("too many numbers announced", { expected: `at most ${most}`, found: values });
   }

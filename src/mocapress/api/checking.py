@@ -8,7 +8,7 @@ from mocapress.api.restoring import contents
 from mocapress.container import CHANNELS, Damage, diffma_json
 from mocapress.errors import MissingModelError, MocapressError
 from mocapress.models import Place
-from mocapress.source import DIFFMA_JSON, Named, Source
+from mocapress.source import DIFFMA_JSON, LIMIT, Named, Source
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class Checked:
     """Everything that is damaged: sections, chunks, the original; nothing of a sound file."""
 
 
-def verify(source: Named, *, models: Sequence[Place] = ()) -> Checked:
+def verify(source: Named, *, models: Sequence[Place] = (), limit: int | None = LIMIT) -> Checked:
     """Read and decode all of a compressed file, and check every checksum and digest.
 
     Parameters
@@ -30,6 +30,9 @@ def verify(source: Named, *, models: Sequence[Place] = ()) -> Checked:
         A ``.mcz`` or a DiffMA JSON: a path, the contents or a binary stream.
     models
         Where to look for the model that the file may need, as in ``decompress``.
+    limit
+        Bytes that may be restored, of the file, and of its numbers, 8 each: 4 GiB by default; None
+        for any number.
 
     Raises
     ------
@@ -37,21 +40,25 @@ def verify(source: Named, *, models: Sequence[Place] = ()) -> Checked:
         When it is no such file, or nothing in it can be read.
     MissingModelError
         When the model that the file needs is nowhere.
+    UnsupportedError
+        When more would be restored than ``limit`` allows.
 
     """
-    return verify_source(Source(source), models)
+    return verify_source(Source(source, limit=limit), models)
 
 
 def verify_source(source: Source, models: Sequence[Place] = ()) -> Checked:
     """Check a file; see ``verify``."""
     if source.kind == DIFFMA_JSON:  # a layout is not needed to be sound
-        return Checked(diffma_json.json_to_clip(source.data).values.nbytes, ())
+        return Checked(diffma_json.json_to_clip(source).values.nbytes, ())
     return verify_opened(Opened(source, models, salvage=True))
 
 
 def verify_opened(opened: Opened) -> Checked:
     """Check a file that was opened to be salvaged; see ``verify``."""
     original, size = opened.mcz.original, 0
+    if original is not None:
+        opened.source.allow(original.size)
     for index, head in enumerate(opened.streams):
         if head.kind == CHANNELS:
             size += opened.rows(index).values.nbytes

@@ -20,7 +20,7 @@ from mocapress.formats import Format
 from mocapress.models import Place
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.columns import bone_columns
-from mocapress.source import DIFFMA_JSON, EMBEDDED, Beside, Named, Source
+from mocapress.source import DIFFMA_JSON, EMBEDDED, LIMIT, Beside, Named, Source
 
 _RAISE, _SKIP = "raise", "skip"
 
@@ -34,6 +34,7 @@ def load(
     models: Sequence[Place] = (),
     strict: bool = True,
     errors: str = _RAISE,
+    limit: int | None = LIMIT,
 ) -> Clip:
     """Give the clip in a ``.mcz`` or a DiffMA JSON, or some of its frames.
 
@@ -57,6 +58,8 @@ def load(
     errors
         ``"raise"``, or ``"skip"`` to go on in a damaged file: rows that are lost are NaN, and a
         ``MotionWarning`` names each loss.
+    limit
+        Bytes that may be restored: of the numbers, 8 each, 4 GiB by default; None for any number.
 
     Raises
     ------
@@ -66,10 +69,12 @@ def load(
         When the original had lost frames, in strict reading; or there is no motion in it.
     MissingModelError
         When the model that the file needs is nowhere.
+    UnsupportedError
+        When more would be restored than ``limit`` allows.
 
     """
     return load_source(
-        Source(source),
+        Source(source, limit=limit),
         frames,
         stream=stream,
         asf_path=asf_path,
@@ -95,7 +100,7 @@ def load_source(
     if frames is not None and not isinstance(frames, slice):
         raise ParameterError("frames", expected="a slice, e.g. slice(10, 11)", found=repr(frames))
     if source.kind == DIFFMA_JSON:
-        clip = diffma_json.json_to_clip(source.data)
+        clip = diffma_json.json_to_clip(source)
         return clip if frames is None else clip[frames]
     opened = Opened(source, models, salvage=errors == _SKIP)
     return load_opened(opened, frames, stream=stream, asf_path=asf_path, strict=strict)
@@ -155,6 +160,8 @@ def _clip(
     if frames is not None:
         wanted = wanted[:1]
     streams = {}
+    if frames is None:
+        opened.source.allow(sum(opened.bytes_of(i, opened.frames(i)) for i in wanted))
     for index in wanted:
         head = opened.streams[index]
         rows = range(opened.frames(index))[frames or slice(None)]

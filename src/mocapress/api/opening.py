@@ -76,6 +76,10 @@ class Opened:
         """Give how many frames a stream has."""
         return self.mcz.frames(stream)
 
+    def bytes_of(self, stream: int, frames: int) -> int:
+        """Give how many bytes so many frames of a stream are, decoded."""
+        return 8 * frames * max(len(self.streams[stream].columns), 1)
+
     def codec(self, stream: int = 0) -> Codec:
         """Give the codec of a stream."""
         if stream not in self._codecs:
@@ -113,10 +117,13 @@ class Opened:
             When a chunk is damaged, unless the file was opened to be salvaged.
         MissingModelError
             When the model that the stream needs is nowhere.
+        UnsupportedError
+            When they are more than the source's limit allows.
 
         """
         head = self.streams[stream]
         last = self.mcz.frames(stream) if last is None else last
+        self.source.allow(self.bytes_of(stream, max(last - first, 0)))
         values = np.full((max(last - first, 0), len(head.columns)), np.nan)
         kept = np.zeros(len(values), np.bool_)
         for group in _groups(self.mcz.of_stream[stream], first, last, alone=self.salvage):

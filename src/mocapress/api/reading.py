@@ -9,12 +9,18 @@ from mocapress.errors import UnsupportedError
 from mocapress.formats import Format
 from mocapress.motion import Clip
 from mocapress.motion.convert import with_rate
-from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, Named, Source
+from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, LIMIT, Named, Source
 from mocapress.source import read as read_motion
 from mocapress.storage import ExistsError, write_all, write_whole
 
 
-def read(source: Named, *, asf_path: str | Path | None = None, strict: bool = True) -> Clip:
+def read(
+    source: Named,
+    *,
+    asf_path: str | Path | None = None,
+    strict: bool = True,
+    limit: int | None = LIMIT,
+) -> Clip:
     """Read a motion file: of any format, or DiffMA JSON.
 
     Parameters
@@ -32,6 +38,8 @@ def read(source: Named, *, asf_path: str | Path | None = None, strict: bool = Tr
         with rows that cannot be read. With ``strict=False`` it is read as far as possible, with a
         ``MotionWarning``; a row that cannot be read between others keeps the values of the one
         before. What loses nothing, such as a row more than declared, always is a warning.
+    limit
+        Bytes that the numbers of a DiffMA JSON may be, 8 each: 4 GiB by default; None for any.
 
     Raises
     ------
@@ -42,13 +50,13 @@ def read(source: Named, *, asf_path: str | Path | None = None, strict: bool = Tr
         When it cannot be opened.
 
     """
-    return read_source(Source(source), asf_path, strict=strict)
+    return read_source(Source(source, limit=limit), asf_path, strict=strict)
 
 
 def read_source(source: Source, asf_path: str | Path | None = None, *, strict: bool = True) -> Clip:
     """Read a motion file; see ``read``."""
     if source.kind == DIFFMA_JSON:
-        return diffma_json.json_to_clip(source.data)
+        return diffma_json.json_to_clip(source)
     return read_motion(source, asf_path, strict=strict)
 
 

@@ -17,7 +17,7 @@ from mocapress.formats.layout_record import read_layout
 from mocapress.formats.number_formats import SHORTEST
 from mocapress.formats.patterns import References
 from mocapress.models import Place
-from mocapress.source import DIFFMA_JSON, Named, Source
+from mocapress.source import DIFFMA_JSON, LIMIT, Named, Source
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,11 @@ class Restored:
 
 
 def decompress(
-    source: Named | Source, *, models: Sequence[Place] = (), salvage: bool = False
+    source: Named | Source,
+    *,
+    models: Sequence[Place] = (),
+    salvage: bool = False,
+    limit: int | None = LIMIT,
 ) -> bytes:
     """Give the original file's bytes (for a lossy codec: the decoded values in its layout).
 
@@ -51,6 +55,9 @@ def decompress(
     salvage
         Whether to give what is left of a damaged file: rows that cannot be decoded are left out,
         and a ``MotionWarning`` names each loss.
+    limit
+        Bytes that may be restored, of the file, and of its numbers, 8 each: 4 GiB by default; None
+        for any number.
 
     Raises
     ------
@@ -59,17 +66,18 @@ def decompress(
     MissingModelError
         When the model that the file needs is nowhere.
     UnsupportedError
-        When there is no original file: the ``.mcz`` was recorded, or made of a clip.
+        When there is no original file: the ``.mcz`` was recorded, or made of a clip; or when more
+        would be restored than ``limit`` allows.
 
     """
-    opened = source if isinstance(source, Source) else Source(source)
+    opened = source if isinstance(source, Source) else Source(source, limit=limit)
     return restore(opened, models, salvage=salvage).data
 
 
 def restore(source: Source, models: Sequence[Place] = (), *, salvage: bool = False) -> Restored:
     """Restore a file; see ``decompress``."""
     if source.kind == DIFFMA_JSON:
-        kind, data = diffma_json.json_to_file(source.data)
+        kind, data = diffma_json.json_to_file(source)
         return Restored(data, kind)
     return restore_opened(Opened(source, models, salvage=salvage))
 
@@ -94,6 +102,7 @@ def restore_opened(opened: Opened) -> Restored:
 
 def contents(opened: Opened, original: Original) -> bytes:
     """Give the original file's bytes, and see that they are these."""
+    opened.source.allow(original.size)
     if not original.format:
         data, lossless = original.contents(), True
     elif not opened.streams:
@@ -111,7 +120,8 @@ def contents(opened: Opened, original: Original) -> bytes:
 
 def printed(opened: Opened, original: Original, rows: Rows) -> bytes:
     """Print decoded rows in the original's layout; lost rows are left out."""
-    size = original.size
+    size, source = original.size, opened.source
+    source.allow(sum(opened.bytes_of(i, opened.frames(i)) for i in range(len(opened.streams))))
     own = own_layout(original)
     if own is not None:
         return own.join([rows.values, *_others(opened)], limits.most_printed(size, 0))
@@ -120,9 +130,10 @@ def printed(opened: Opened, original: Original, rows: Rows) -> bytes:
         most = limits.most_printed(size, rows.values.size)
     keep = None if rows.kept.all() else rows.kept
     layout = layout_of(opened, original, len(rows.values) if keep is None else int(keep.sum()))
-    if keep is None:
-        return layout.join(rows.values, most)
-    return layout.rows(keep).join(rows.values[keep], most)
+    values = rows.values
+    if keep is not None:
+        layout, values = layout.rows(keep), values[keep]
+    return source.printed(lambda allowed: layout.join(values, allowed), most)
 
 
 def own_layout(original: Original) -> StoredLayout | None:
@@ -145,7 +156,7 @@ def layout_of(opened: Opened, original: Original, rows: int) -> Layout:
         opened.frames(),
         tuple(column.decimal or SHORTEST for column in stream.columns),
         references(opened, stream),
-        limits.most_layout(original.size),
+        limits.most_layout(original.size, len(original.packed)),
         rows,
     )
 

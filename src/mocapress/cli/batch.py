@@ -61,11 +61,12 @@ class Job:
     error: Exception | None = None
     warnings: list[MotionWarning] = field(default_factory=list)
 
-    def opened(self) -> "Source":
-        """Open the file, or stdin."""
-        from mocapress.source import Source
+    def opened(self, limit: int | None = None) -> "Source":
+        """Open the file, or stdin, of which so many bytes may be restored."""
+        from mocapress.source import LIMIT, Source
 
-        return Source(sys.stdin.buffer) if self.source == STREAM else Source(self.source)
+        named = sys.stdin.buffer if self.source == STREAM else self.source
+        return Source(named, limit=LIMIT if limit is None else limit)
 
 
 def find(inputs: Sequence[Path], suffixes: tuple[str, ...]) -> list[Job]:

@@ -13,6 +13,7 @@ from mocapress.cli.options import (
     Jobs,
     Json,
     Lenient,
+    Limit,
     Models,
     Output,
 )
@@ -38,6 +39,7 @@ def convert(
     ] = None,
     asf: Asf = None,
     models: Models = None,
+    limit: Limit = None,
     fps: Annotated[
         float | None,
         typer.Option("--fps", help="Frames per second, instead of what the file states.", min=1e-3),
@@ -82,7 +84,7 @@ def convert(
 
     def work(job: "Job") -> dict[str, Any]:
         assert job.target is not None
-        source = job.opened()
+        source = job.opened(limit)
         clip = _read(source, asf, places_for(job, given), strict=not lenient)
         clip = with_rate(clip, fps, needed=made.timed)
         job.outputs |= api.printed(clip, made, job.target)

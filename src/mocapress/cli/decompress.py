@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mocapress.cli.options import Debug, Force, Inputs, Jobs, Json, Models, Output
+from mocapress.cli.options import Debug, Force, Inputs, Jobs, Json, Limit, Models, Output
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -15,6 +15,7 @@ def decompress(
     inputs: Inputs,
     output: Output = None,
     models: Models = None,
+    limit: Limit = None,
     salvage: Annotated[
         bool,
         typer.Option(
@@ -51,7 +52,7 @@ def decompress(
 
     def work(job: "Job") -> dict[str, Any]:
         assert job.target is not None
-        source = job.opened()
+        source = job.opened(limit)
         try:
             restored = api.restore(source, places_for(job, given), salvage=salvage)
         except CorruptError as error:

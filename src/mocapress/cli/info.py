@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from mocapress.cli.options import Asf, Debug, Inputs, Jobs, Json, Lenient, Models
+from mocapress.cli.options import Asf, Debug, Inputs, Jobs, Json, Lenient, Limit, Models
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -12,6 +12,7 @@ def info(
     inputs: Inputs,
     asf: Asf = None,
     models: Models = None,
+    limit: Limit = None,
     lenient: Lenient = False,
     jobs: Jobs = 1,
     json: Json = False,
@@ -30,14 +31,14 @@ def info(
     strict = not lenient
 
     def work(job: "Job") -> dict[str, Any]:
-        source = job.opened()
+        source = job.opened(limit)
         if source.kind == MCZ:
             places = places_for(job, given)
             return describe.describe_mcz(source, asf_path=asf, models=places, strict=strict)
         if source.kind == MCM:
             return describe.describe_model(load_model(source.data), source.size)
         if source.kind == DIFFMA_JSON:
-            return describe.describe_json(source.data)
+            return describe.describe_json(source)
         return describe.describe_file(source, asf_path=asf, strict=strict)
 
     run(files, work, threads=jobs, json=json, show=show, debug=debug)

@@ -1,5 +1,6 @@
 """Options that several commands have."""
 
+import re
 from pathlib import Path
 from typing import Annotated
 
@@ -44,8 +45,26 @@ Models = Annotated[
         show_default=False,
     ),
 ]
+Limit = Annotated[
+    int | None,
+    typer.Option(
+        "--limit",
+        parser=lambda text: _bytes(text),
+        metavar="SIZE",
+        help="Bytes that may be restored from a file, or decoded of its numbers, e.g. 500M or 16G.",
+        show_default="4G",
+    ),
+]
 Lenient = Annotated[
     bool,
     typer.Option("--lenient", help="Read files that have lost frames as far as possible."),
 ]
 Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks.", hidden=True)]
+
+
+def _bytes(text: str) -> int:
+    """Read a number of bytes: 4096, 500M, 4G; K, M, G, T are powers of 1024."""
+    found = re.fullmatch(r"([0-9]{1,15})([KMGT]?)", text.upper())
+    if found is None:
+        raise typer.BadParameter(f"{text!r} is no size such as 500M or 16G")
+    return int(found[1]) << 10 * " KMGT".index(found[2] or " ")

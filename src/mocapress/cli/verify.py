@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from mocapress.cli.options import Debug, Inputs, Jobs, Json, Models
+from mocapress.cli.options import Debug, Inputs, Jobs, Json, Limit, Models
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 def verify(
     inputs: Inputs,
     models: Models = None,
+    limit: Limit = None,
     jobs: Jobs = 1,
     json: Json = False,
     debug: Debug = False,
@@ -28,7 +29,7 @@ def verify(
     files, given = find(inputs, (".mcz", *JSON_SUFFIXES)), open_models(models or [])
 
     def work(job: "Job") -> dict[str, Any]:
-        source = job.opened()
+        source = job.opened(limit)
         checked = api.verify_source(source, places_for(job, given))
         if checked.damage:
             parts = (f"{where} ({error.what})" for where, error in checked.damage)

@@ -65,9 +65,9 @@ def write_columns(writer: Writer, columns: Sequence[Column], skeleton: Skeleton 
     writer.runs([places[column.decimal] for column in columns])
 
 
-def read_columns(reader: Reader, skeleton: Skeleton | None) -> Columns:
-    """Take columns."""
-    count = reader.integer(limits.COLUMNS)
+def read_columns(reader: Reader, skeleton: Skeleton | None, most: int = limits.COLUMNS) -> Columns:
+    """Take columns, at most so many."""
+    count = reader.integer(most)
     form = reader.integer(_NUMBERED)
     if form == _SKELETON:
         found = _skeleton_columns(skeleton) if skeleton else Columns((), ())

@@ -116,7 +116,7 @@ def file_to_json(
     source.accept(problems)
     source.warn_of_guess()
     text = clip_to_json(clip, codec, layout=_packed(layout, clip))
-    return text, Loss.of(clip.values, json_to_clip(text).values)
+    return text, Loss.of(clip.values, json_to_clip(Source(text, limit=None)).values)
 
 
 def clip_to_json(clip: Clip, codec: Codec, *, layout: bytes = b"") -> bytes:
@@ -161,17 +161,24 @@ def open_json(data: bytes | memoryview) -> Document:
     return read_document(data)
 
 
-def json_to_clip(data: bytes | memoryview, *, bound: float | None = None) -> Clip:
+def json_to_clip(source: Source, *, bound: float | None = None) -> Clip:
     """Give the clip in a document; ``bound`` asks for a coarser level of detail.
 
     Columns, skeleton and frame time are as far known as the document says.
+
+    Raises
+    ------
+    UnsupportedError
+        When it has more numbers than the source's limit allows.
+
     """
-    document = open_json(data)
+    document = open_json(source.data)
+    source.allow(8 * document.frames * len(document.names))
     columns = _unpacked(document)[0].columns if document.layout else _columns(document)
     return Clip.of(document.decode(bound), columns, document.frame_time, document.skeleton)
 
 
-def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:
+def json_to_file(source: Source) -> tuple[str, bytes]:
     """Give the motion file that a document was made of, with the decoded values in its layout.
 
     Returns
@@ -182,10 +189,12 @@ def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:
     Raises
     ------
     UnsupportedError
-        When the document has no layout, as those of other writers.
+        When the document has no layout, as those of other writers; or when more would be restored
+        than the source's limit allows.
 
     """
-    document = open_json(data)
+    document = open_json(source.data)
+    source.allow(8 * document.frames * len(document.names))
     if not document.layout:
         raise UnsupportedError(
             "$.layout is not there to make the file again",
@@ -193,10 +202,10 @@ def json_to_file(data: bytes | memoryview) -> tuple[str, bytes]:
         )
     found, kind, record = _unpacked(document)
     values = document.decode()
-    most = most_printed(1 << 24, values.size + len(data))
+    most = most_printed(1 << 24, values.size + source.size)
     formats = tuple(column.decimal or SHORTEST for column in found.columns)
     layout = read_layout(record, kind, document.frames, formats, _references(found), most)
-    return kind, layout.join(values, most)
+    return kind, source.printed(lambda allowed: layout.join(values, allowed), most)
 
 
 def format_of(data: bytes | memoryview) -> str:

@@ -69,11 +69,11 @@ def write_head(head: Head) -> bytes:
 
 
 def write_parts(head: Head) -> tuple[bytes, bytes]:
-    """Give skeleton and streams of a head apart, each packed; a library keeps them so."""
+    """Give skeleton, not packed, and streams of a head, packed; a library keeps them apart."""
     skeleton, streams = Writer(), Writer()
     write_skeleton(skeleton, head.skeleton)
     _write_streams(streams, head)
-    return pack(bytes(skeleton.data)), pack(bytes(streams.data))
+    return bytes(skeleton.data), pack(bytes(streams.data))
 
 
 def join_parts(skeleton: bytes | None, streams: bytes) -> bytes:
@@ -82,11 +82,10 @@ def join_parts(skeleton: bytes | None, streams: bytes) -> bytes:
     Raises
     ------
     CorruptError
-        When they cannot be unpacked.
+        When the streams cannot be unpacked.
 
     """
-    record = b"\0" if skeleton is None else unpack(skeleton, "skeleton", limits.UNPACKED)
-    return stored(record + unpack(streams, "head", limits.UNPACKED))
+    return stored((skeleton or b"\0") + unpack(streams, "head", limits.UNPACKED))
 
 
 def read_head(content: bytes) -> Head:
@@ -100,11 +99,14 @@ def read_head(content: bytes) -> Head:
     """
     reader = Reader(unpack(content, "head", limits.UNPACKED), "head")
     skeleton = read_skeleton(reader)
-    streams = []
+    streams: list[StreamHead] = []
+    left = limits.COLUMNS
     for _ in range(reader.integer(limits.STREAMS)):
         name, kind, description = reader.text(), reader.text(), reader.bytes()
         if kind == CHANNELS:
-            streams.append(_read_stream(Reader(description, f"stream {name!r}"), name, skeleton))
+            own = Reader(description, f"stream {name!r}")
+            streams.append(_read_stream(own, name, skeleton, left))
+            left -= len(streams[-1].columns)
         else:
             streams.append(StreamHead(name, 0, None, (), CodecSpec("", {}), kind=kind))
     reader.end()
@@ -132,10 +134,12 @@ def _write_stream(writer: Writer, stream: StreamHead, skeleton: Skeleton | None)
     writer.bytes(stream.header)
 
 
-def _read_stream(reader: Reader, name: str, skeleton: Skeleton | None) -> StreamHead:
+def _read_stream(
+    reader: Reader, name: str, skeleton: Skeleton | None, most_columns: int
+) -> StreamHead:
     frames = reader.integer()
     frame_time = _read_time(reader)
-    columns: Columns = read_columns(reader, skeleton)
+    columns: Columns = read_columns(reader, skeleton, most_columns)
     codec = _read_codec(reader)
     model, header = reader.bytes(), reader.bytes()
     reader.end()

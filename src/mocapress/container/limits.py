@@ -8,25 +8,35 @@ from mocapress.errors import CorruptError
 STREAMS = 2**8
 PARAMETERS = 2**6
 JOINTS = 2**16
-COLUMNS = 2**20
+ENDS = 2**17
+"""End sites of a skeleton."""
+COLUMNS = 2**18
+"""Of all streams together; also channels of a skeleton."""
+FACTS = 2**12
+"""About a skeleton, or notes."""
 PROBLEMS = 1000
-UNPACKED = 2**26
+UNPACKED = 2**24
 """Bytes of a head, or of notes."""
 
 
 def most_values(length: int) -> int:
     """Give how many numbers a file of so many bytes may hold."""
-    return 2**24 + 2**12 * length
+    return 2**22 + 2**12 * length
 
 
 def most_original(length: int) -> int:
     """Give how large a file may be that is packed in one of so many bytes."""
-    return 2**28 + 2**14 * length
+    return 2**24 + 2**14 * length
 
 
-def most_layout(size: int) -> int:
-    """Give how large the layout of a file of so many bytes may be."""
-    return 2 * size + 2**20
+def most_layout(size: int, packed: int) -> int:
+    """Give how large the layout of a file of so many bytes may be, packed in so many."""
+    return min(2 * size + 2**20, 2**24 + 2**8 * packed)
+
+
+def most_companions(length: int) -> int:
+    """Give how large all companions in a file of so many bytes may be together."""
+    return 2**24 + 2**8 * length
 
 
 def most_printed(size: int, values: int) -> int:

@@ -179,7 +179,8 @@ class _Collector:
         elif tag == Tag.NOTES:
             mcz.notes = read_notes(content)
         elif tag == Tag.COMPANION:
-            mcz.companions.append(read_companion(content, mcz.size))
+            room = limits.most_companions(mcz.size) - sum(len(c.data) for c in mcz.companions)
+            mcz.companions.append(read_companion(content, room))
         elif must_know:
             raise UnsupportedError(
                 f"section {_name(tag)} is not known to this version of mocapress", offset=begin

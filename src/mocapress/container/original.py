@@ -39,7 +39,7 @@ class Original:
             When it cannot be unpacked.
 
         """
-        return unpack(self.packed, "layout", limits.most_layout(self.size))
+        return unpack(self.packed, "layout", limits.most_layout(self.size, len(self.packed)))
 
     def contents(self) -> bytes:
         """Give the file, where it is no motion.
@@ -153,7 +153,7 @@ def read_notes(content: bytes) -> dict[str, str]:
     """
     reader = Reader(unpack(content, "notes", limits.UNPACKED), "notes")
     notes = {}
-    for _ in range(reader.count(2)):
+    for _ in range(reader.integer(limits.FACTS)):
         key = reader.text()
         notes[key] = reader.text()
     reader.end()
@@ -168,8 +168,8 @@ def write_companion(companion: Companion) -> bytes:
     return bytes(writer.data) + pack(companion.data)
 
 
-def read_companion(content: bytes, length: int) -> Companion:
-    """Read the content of the section in a file of so many bytes.
+def read_companion(content: bytes, most: int) -> Companion:
+    """Read the content of the section, whose file has at most so many bytes.
 
     Raises
     ------
@@ -180,4 +180,4 @@ def read_companion(content: bytes, length: int) -> Companion:
     reader = Reader(content, "companion")
     kind, name = reader.text(), reader.text()
     packed = reader.raw(reader.left)
-    return Companion(kind, name, unpack(packed, "companion", limits.most_original(length)))
+    return Companion(kind, name, unpack(packed, "companion", most))

@@ -11,13 +11,45 @@ _NO_AXIS = ((0.0, 0.0, 0.0), "xyz")
 
 def is_storable(skeleton: Skeleton) -> bool:
     """Tell whether a skeleton has only channels that a file can name."""
-    return len(skeleton.joints) <= limits.JOINTS and all(
-        set(joint.channels) <= set(_KINDS) for joint in skeleton.joints
+    joints = skeleton.joints
+    return (
+        len(joints) <= limits.JOINTS
+        and sum(len(joint.ends) for joint in joints) <= limits.ENDS
+        and sum(len(joint.channels) for joint in joints) <= limits.COLUMNS
+        and len(skeleton.metadata) <= limits.FACTS
+        and all(set(joint.channels) <= set(_KINDS) for joint in joints)
     )
+
+
+class _Recent:
+    """The last skeletons and their records: of many clips in a row most have the same."""
+
+    MOST, LONGEST = 4, 2**16
+
+    def __init__(self) -> None:
+        self.pairs: tuple[tuple[Skeleton, bytes], ...] = ()
+
+    def keep(self, skeleton: Skeleton, record: bytes) -> None:
+        if len(record) <= self.LONGEST:
+            self.pairs = ((skeleton, record), *self.pairs[: self.MOST - 1])
+
+
+_read, _written = _Recent(), _Recent()
 
 
 def write_skeleton(writer: Writer, skeleton: Skeleton | None) -> None:
     """Append a skeleton, or that there is none."""
+    for known, record in _written.pairs:
+        if known is skeleton:
+            writer.data += record
+            return
+    begin = len(writer.data)
+    _write_skeleton(writer, skeleton)
+    if skeleton is not None:
+        _written.keep(skeleton, bytes(writer.data[begin:]))
+
+
+def _write_skeleton(writer: Writer, skeleton: Skeleton | None) -> None:
     joints = skeleton.joints if skeleton else ()
     writer.integer(len(joints))
     if skeleton is None or not joints:
@@ -70,20 +102,41 @@ def vector_numbers(skeleton: Skeleton) -> list[float]:
 
 def read_skeleton(reader: Reader) -> Skeleton | None:
     """Take a skeleton, or None where there is none."""
+    begin = reader.position
+    for known, record in _read.pairs:
+        if reader.data[begin : begin + len(record)] == record:
+            reader.position += len(record)
+            return known
+    skeleton = _read_skeleton(reader)
+    if skeleton is not None:
+        _read.keep(skeleton, bytes(reader.data[begin : reader.position]))
+    return skeleton
+
+
+def _read_skeleton(reader: Reader) -> Skeleton | None:
     count = reader.integer(limits.JOINTS)
     if count == 0:
         return None
     flags = reader.integer(31)
     name = reader.text()
     metadata = {}
-    for _ in range(reader.count(2)):
+    for _ in range(reader.integer(limits.FACTS)):
         key = reader.text()
         metadata[key] = reader.text()
     length_unit = reader.double() if flags & _LENGTH_UNIT else None
     names = [reader.text() for _ in range(count)]
     parents = [index - 1 - reader.integer(index) for index in range(count)]
-    channels = [tuple(_word(reader, code) for code in reader.bytes()) for _ in range(count)]
-    ends = [reader.count(1) for _ in range(count)]
+    channels: list[tuple[str, ...]] = []
+    left = limits.COLUMNS
+    for _ in range(count):
+        codes = reader.raw(reader.integer(left))
+        left -= len(codes)
+        channels.append(tuple(_word(reader, code) for code in codes))
+    ends: list[int] = []
+    left = limits.ENDS
+    for _ in range(count):
+        ends.append(reader.integer(left))
+        left -= ends[-1]
     vectors = _vectors(reader, count + sum(ends))
     orders, axes = ["xyz"] * count, [(0.0, 0.0, 0.0)] * count
     if flags & _AXES:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mocapress.formats.layout import Layout
 from mocapress.formats.problems import Problem
-from mocapress.motion import Clip, Skeleton
+from mocapress.motion import Clip, Column, Skeleton
 
 
 class StoredLayout(Protocol):
@@ -45,7 +45,7 @@ class Split(NamedTuple):
 def split_of(clip: Clip, layout: Layout, problems: Sequence[Problem], file: str | None) -> Split:
     """Put a split together; the columns get the number formats that the layout found."""
     columns = tuple(
-        replace(column, decimal=number_format)
+        Column(column.name, column.joint, column.kind, column.unit, number_format)
         for column, number_format in zip(clip.columns, layout.formats, strict=True)
     )
     named = replace(clip.with_columns(columns), name=Path(file).stem if file else "")

@@ -1,5 +1,7 @@
 """A layout as bytes: docs/format/layout.md."""
 
+from array import array
+
 import numpy as np
 
 from mocapress.errors import CorruptError
@@ -120,13 +122,16 @@ def read_layout(
     if counted:
         zigzag = reader.runs(frames, 2**62)
         counters = np.cumsum(np.where(zigzag & 1, -((zigzag + 1) >> 1), zigzag >> 1))
-    rows, slots, texts = [], [], []
+    # Compact, and equal texts once: a cell that is stored in three bytes must not cost a hundred.
+    rows, slots, texts = array("Q"), array("I"), []
+    known: dict[bytes, bytes] = {}
     row = 0
-    for _ in range(reader.count(3)):
+    for _ in range(reader.integer(min(reader.left // 3, frames * (len(formats) + 1)))):
         row += reader.integer(frames)
         rows.append(row)
         slots.append(reader.integer(2**32 - 1))
-        texts.append(reader.bytes())
+        text = reader.bytes()
+        texts.append(known.setdefault(text, text))
     if row and row >= frames:
         raise reader.fail("a number outside the rows")
     raw_rows = tuple(reader.bytes() for _ in range(int((assigned < 0).sum())))

@@ -1,6 +1,6 @@
 """Number formats as bytes, and numbers printed in them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from decimal import Decimal
 
 import numpy as np
@@ -31,8 +31,13 @@ _STATED_DIGITS, _STATED_SIZE = 100, 18
 
 def packed(formats: Sequence[NumberFormat]) -> NDArray[np.uint8]:
     """Give formats as the compiled core and files have them: (C, 4) uint8."""
-    rows = [(f.kind, f.digits, f.exponent_digits, _flags(f)) for f in formats]
-    return np.array(rows, dtype=np.uint8).reshape(len(formats), 4)
+    # Columns share the objects of their formats.
+    rows = {id(f): (f.kind, f.digits, f.exponent_digits, _flags(f)) for f in _distinct(formats)}
+    return np.array([rows[id(f)] for f in formats], dtype=np.uint8).reshape(len(formats), 4)
+
+
+def _distinct(formats: Sequence[NumberFormat]) -> Iterable[NumberFormat]:
+    return {id(f): f for f in formats}.values()
 
 
 def unpacked(rows: NDArray[np.uint8]) -> tuple[NumberFormat, ...]:

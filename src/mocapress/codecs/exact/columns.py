@@ -83,12 +83,12 @@ class Told:
         """
         if not reader.left:
             return cls()
-        values = [reader.double() for _ in range(reader.count(8))]
+        values = [reader.double() for _ in range(reader.integer(2 * columns))]
         masks_of: list[tuple[int, int]] = []
         if values:
             first, second = (read_palette(reader, columns, len(values)) for _ in range(2))
             masks_of = list(zip(first, second, strict=True))
-        count = reader.count()
+        count = reader.integer(columns)
         tables = read_tables(reader, count)
         table_of = read_palette(reader, columns, count) if count else []
         return cls(values, masks_of, tables, table_of)

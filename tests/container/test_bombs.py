@@ -1,0 +1,85 @@
+"""What a file asks for: memory is bounded by what comes out of it, whatever it announces."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from bombs import BOMBS
+from running import mocapress
+
+import mocapress as mp
+
+_ALLOWED = 2**28
+_CHILD = """
+import json, resource, sys, warnings
+import mocapress as mp
+resource.setrlimit(resource.RLIMIT_AS, (4 * 2**30,) * 2)
+warnings.simplefilter("ignore")
+restored = 0
+for work in (mp.decompress, mp.load, mp.verify):
+    try:
+        made = work(sys.argv[1])
+    except mp.MocapressError:
+        continue
+    if isinstance(made, bytes):
+        restored = max(restored, len(made))
+    elif hasattr(made, "streams"):
+        restored = max(restored, sum(stream.values.nbytes for stream in made.streams.values()))
+    del made
+with open("/proc/self/status") as status:
+    peak = next(int(line.split()[1]) * 1024 for line in status if line.startswith("VmHWM"))
+print(json.dumps([peak, restored]))
+"""
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="needs /proc")
+
+
+@pytest.mark.parametrize("name", BOMBS)
+def test_memory_is_bounded_by_what_comes_out(name: str, tmp_path: Path) -> None:
+    """At most 256 MB and four times what is restored; an error where it is refused."""
+    path = tmp_path / f"bomb{Path(name).suffix or '.mcz'}"
+    path.write_bytes(BOMBS[name]())
+    command = [sys.executable, "-c", _CHILD, str(path)]
+    ran = subprocess.run(command, capture_output=True, text=True, check=True)
+    peak, restored = json.loads(ran.stdout)
+    assert peak <= _ALLOWED + 4 * restored, f"{peak} bytes for {restored} in {path.stat().st_size}"
+
+
+def test_a_limit_bounds_what_is_restored(tmp_path: Path) -> None:
+    """Command line and Python: of the file, and of the numbers, 8 bytes each."""
+    text = b"1,2\n3,4\n" * 1000
+    packed = mp.compress(text)
+    recorded = mp.compress(Path("samples/cmu_01_01.amc"))
+    numbers = mp.load(recorded).values.nbytes
+    for allowed in (len(text), None):
+        assert mp.decompress(packed, limit=allowed) == text
+    assert mp.load(recorded, limit=numbers).values.nbytes == numbers
+    assert mp.load(recorded, slice(10), limit=8 * 62 * 10).frames == 10
+    for work, blob, enough in (
+        (mp.decompress, packed, len(text)),
+        (mp.verify, packed, len(text)),
+        (mp.load, recorded, numbers),
+        (mp.decompress, recorded, numbers),
+    ):
+        with pytest.raises(mp.UnsupportedError, match="limit"):
+            work(blob, limit=enough - 1)
+    path = tmp_path / "a.csv.mcz"
+    path.write_bytes(packed)
+    refused = mocapress("decompress", path, "--limit", "7K")
+    assert refused.exit_code == 1
+    assert "at most 7168 bytes" in refused.stderr
+    assert not (tmp_path / "a.csv").exists()
+    assert mocapress("verify", path, "--limit", "7K").exit_code != 0
+    assert mocapress("decompress", path, "--limit", "8k").exit_code == 0
+    assert mocapress("decompress", path, "--limit", "much").exit_code == 2
+
+
+def test_a_limit_bounds_the_numbers_of_a_json() -> None:
+    text = mp.to_json("samples/cmu_01_01.amc")
+    numbers = mp.read(text).values.nbytes
+    for work in (mp.read, mp.load, mp.decompress, mp.verify):
+        work(text, limit=4 * numbers)
+        with pytest.raises(mp.UnsupportedError, match="limit"):
+            work(text, limit=numbers - 1)
