@@ -21,6 +21,7 @@ test: check sanitize test-js tests
 long: $(VENV)/.built corpus
 	$(BIN)/python tests/campaigns/kills.py --runs 1000 \
 	    $(if $(wildcard corpus/.version),--corpus corpus) --every-call
+	$(BIN)/python tests/campaigns/library_kills.py --runs 300
 	$(MAKE) sanitize FUZZ_RUNS=1000000
 
 check: $(VENV)/.built

@@ -21,7 +21,7 @@ ROWS = [
     {"models"},
     {"api"},
     {"library"},
-    {"describe", "viewer"},
+    {"describe", "viewer", "arrays"},
     {"cli"},
 ]
 HEIGHT = {box: row for row, boxes in enumerate(ROWS) for box in boxes}
@@ -72,6 +72,8 @@ def test_importing_mocapress_loads_no_numpy_and_no_extras() -> None:
         "zstandard",
         "brotli",
         "pcodec",
+        "numcodecs",
+        "torch",
     }
     code = f"import sys, mocapress; print(sorted({heavy!r} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

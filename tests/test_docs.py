@@ -49,8 +49,7 @@ def test_the_guide_to_libraries_runs(tmp_path: Path, monkeypatch: pytest.MonkeyP
         shutil.copy(ROOT / f"samples/{name}.bvh", tmp_path)
     monkeypatch.chdir(tmp_path)
     guide = (ROOT / "docs/guide/library.md").read_text()
-    (code,) = re.findall(r"```python\n(.*?)```", guide, re.DOTALL)
-    exec(code, {})
+    exec("\n".join(re.findall(r"```python\n(.*?)```", guide, re.DOTALL)), {})
 
 
 def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

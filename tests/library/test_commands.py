@@ -6,7 +6,6 @@ import os
 import shutil
 import signal
 import tarfile
-import time
 from pathlib import Path
 from typing import Any
 
@@ -153,7 +152,8 @@ def test_ctrl_c_keeps_what_is_done(tmp_path: Path, take: tuple[bytes, list[bytes
     header, rows = take
     (tmp_path / "clips").mkdir()
     for i in range(60):
-        piece = amc_of(header, [row.replace(b"1", b"%d" % (i % 10)) for row in rows[: 200 + i]])
+        part = rows[i * 35 : i * 35 + 600]
+        piece = amc_of(header, [row.replace(b"1", b"%d" % (i % 10)) for row in part])
         (tmp_path / "clips" / f"{i:02}.amc").write_bytes(piece)
     path = tmp_path / "lib.mocapdb"
     running = started("library", "add", path, tmp_path / "clips", "--codec", "exact:level=9")
@@ -180,4 +180,3 @@ def test_progress_needs_no_terminal(filled: Path, samples: Path, tmp_path: Path)
     (row,) = json.loads(done.stdout)
     assert (row["state"], row["frames"], row["frames_shared"]) == ("added", 69, 69)
     assert done.stderr == b""
-    assert time.time() > 0

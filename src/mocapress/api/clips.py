@@ -8,7 +8,7 @@ from mocapress.api.encoding import coded, stored_skeleton
 from mocapress.api.opening import Opened
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.codecs.loss import Loss, checked_loss
-from mocapress.container import Head, MczWriter, is_storable_time
+from mocapress.container import Head, Mcz, MczWriter, is_storable_time
 from mocapress.errors import UnsupportedError, VerificationError
 from mocapress.motion import Clip
 from mocapress.source import Source
@@ -24,6 +24,8 @@ class Compressed:
     """Why the numbers, or a part of them, were not compressed as motion."""
     loss: Loss | None = None
     """What a lossy codec lost, measured from what it decodes to; None where nothing is lost."""
+    mcz: Mcz | None = None
+    """The file, opened, where that was done to check it."""
 
 
 def compress_clip(
@@ -67,7 +69,7 @@ def compress_clip(
             loss = loss or found
         elif rows.tobytes() != stream.values.tobytes():
             raise VerificationError(f"codec {made.id} does not give back stream {name!r}")
-    return Compressed(blob, None, loss)
+    return Compressed(blob, None, loss, opened.mcz)
 
 
 def checked_codec(codec: str | Codec, model: Model | None) -> Codec:

@@ -11,7 +11,7 @@ from mocapress.api.opening import Opened
 from mocapress.api.restoring import printed
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.codecs.fallback import first_that_works
-from mocapress.codecs.loss import Loss, checked_loss
+from mocapress.codecs.loss import checked_loss
 from mocapress.container import Companion, Head, MczWriter, Original, is_storable_time, pack
 from mocapress.container.columns import bones_of
 from mocapress.errors import CorruptError, FormatError, VerificationError
@@ -148,7 +148,8 @@ def compress_parts(
 ) -> Compressed:
     """Compress a file that was taken apart; see ``compress`` and ``taken_apart``."""
     data = source.data
-    blob, loss, small = None, None, _SMALL
+    found: Compressed | None = None
+    small = _SMALL
     if parts is not None:
         small = _SMALL if parts.stored is None else _SMALL_OF_NUMBERS
         warning = _warning_of(parts, source)
@@ -157,7 +158,7 @@ def compress_parts(
             warning = warning or f"{reason}; stored by a general-purpose compressor"
         else:
 
-            def work(way: Codec) -> tuple[bytes, Loss | None]:
+            def work(way: Codec) -> Compressed:
                 own = model if way is codec else None
                 made = motion_file(
                     parts,
@@ -169,16 +170,15 @@ def compress_parts(
                     companions=companions,
                     notes=notes,
                 )
-                return made, _check(made, data, way, parts.clip, own)
+                return _checked(made, data, way, parts.clip, own)
 
             found, failure = first_that_works(codec, work)
-            blob, loss = found or (None, None)
             warning = "; ".join(filter(None, (failure, warning))) or None
-    if blob is None or len(data) < small or len(blob) > _POOR * len(data):
+    if found is None or len(data) < small or len(found.blob) > _POOR * len(data):
         plain = _compress_plain(source, notes or {})
-        if blob is None or len(plain) < len(blob):
-            blob, loss = plain, None
-    return Compressed(blob, warning, loss)
+        if found is None or len(plain) < len(found.blob):
+            found = Compressed(plain, None)
+    return replace(found, warning=warning)
 
 
 def _warning_of(parts: Split, source: Source) -> str | None:
@@ -269,7 +269,7 @@ def _companions(source: Source) -> list[Companion]:
     return [Companion(of.companion, stored_name(used.file), used.read())]
 
 
-def _check(blob: bytes, data: bytes, codec: Codec, clip: Clip, model: Model | None) -> Loss | None:
+def _checked(blob: bytes, data: bytes, codec: Codec, clip: Clip, model: Model | None) -> Compressed:
     """Decode a file and compare: bytes of a lossless codec, else values."""
     failure = "the file does not come back"
     try:
@@ -279,9 +279,9 @@ def _check(blob: bytes, data: bytes, codec: Codec, clip: Clip, model: Model | No
         assert original is not None
         restored = printed(opened, original, rows)
         if not codec.lossless:
-            return checked_loss(codec, clip, rows.values)
+            return Compressed(blob, None, checked_loss(codec, clip, rows.values), opened.mcz)
         if restored == data:
-            return None
+            return Compressed(blob, None, None, opened.mcz)
     except CorruptError as error:
         failure = error.what
     raise VerificationError(f"codec {codec.id} failed its check ({failure}); please report this")

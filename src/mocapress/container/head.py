@@ -69,11 +69,11 @@ def write_head(head: Head) -> bytes:
 
 
 def write_parts(head: Head) -> tuple[bytes, bytes]:
-    """Give skeleton and streams of a head apart, each packed; a library keeps them so."""
+    """Give skeleton, not packed, and streams of a head, packed; a library keeps them apart."""
     skeleton, streams = Writer(), Writer()
     write_skeleton(skeleton, head.skeleton)
     _write_streams(streams, head)
-    return pack(bytes(skeleton.data)), pack(bytes(streams.data))
+    return bytes(skeleton.data), pack(bytes(streams.data))
 
 
 def join_parts(skeleton: bytes | None, streams: bytes) -> bytes:
@@ -82,11 +82,10 @@ def join_parts(skeleton: bytes | None, streams: bytes) -> bytes:
     Raises
     ------
     CorruptError
-        When they cannot be unpacked.
+        When the streams cannot be unpacked.
 
     """
-    record = b"\0" if skeleton is None else unpack(skeleton, "skeleton", limits.UNPACKED)
-    return stored(record + unpack(streams, "head", limits.UNPACKED))
+    return stored((skeleton or b"\0") + unpack(streams, "head", limits.UNPACKED))
 
 
 def read_head(content: bytes) -> Head:

@@ -21,8 +21,35 @@ def is_storable(skeleton: Skeleton) -> bool:
     )
 
 
+class _Recent:
+    """The last skeletons and their records: of many clips in a row most have the same."""
+
+    MOST, LONGEST = 4, 2**16
+
+    def __init__(self) -> None:
+        self.pairs: tuple[tuple[Skeleton, bytes], ...] = ()
+
+    def keep(self, skeleton: Skeleton, record: bytes) -> None:
+        if len(record) <= self.LONGEST:
+            self.pairs = ((skeleton, record), *self.pairs[: self.MOST - 1])
+
+
+_read, _written = _Recent(), _Recent()
+
+
 def write_skeleton(writer: Writer, skeleton: Skeleton | None) -> None:
     """Append a skeleton, or that there is none."""
+    for known, record in _written.pairs:
+        if known is skeleton:
+            writer.data += record
+            return
+    begin = len(writer.data)
+    _write_skeleton(writer, skeleton)
+    if skeleton is not None:
+        _written.keep(skeleton, bytes(writer.data[begin:]))
+
+
+def _write_skeleton(writer: Writer, skeleton: Skeleton | None) -> None:
     joints = skeleton.joints if skeleton else ()
     writer.integer(len(joints))
     if skeleton is None or not joints:
@@ -75,6 +102,18 @@ def vector_numbers(skeleton: Skeleton) -> list[float]:
 
 def read_skeleton(reader: Reader) -> Skeleton | None:
     """Take a skeleton, or None where there is none."""
+    begin = reader.position
+    for known, record in _read.pairs:
+        if reader.data[begin : begin + len(record)] == record:
+            reader.position += len(record)
+            return known
+    skeleton = _read_skeleton(reader)
+    if skeleton is not None:
+        _read.keep(skeleton, bytes(reader.data[begin : reader.position]))
+    return skeleton
+
+
+def _read_skeleton(reader: Reader) -> Skeleton | None:
     count = reader.integer(limits.JOINTS)
     if count == 0:
         return None

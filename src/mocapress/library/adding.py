@@ -16,9 +16,10 @@ from mocapress.container.original import write_problems
 from mocapress.errors import VerificationError
 from mocapress.library import names, rows
 from mocapress.library.coding import Coded, Coder
-from mocapress.library.opened import OpenedClip, original_name
+from mocapress.library.opened import OpenedClip
 from mocapress.library.removing import remove_clips
 from mocapress.library.rows import Connection, Facts
+from mocapress.library.stored import original_name
 from mocapress.motion import Clip
 from mocapress.source import MCZ, Source
 from mocapress.storage import ExistsError

@@ -11,8 +11,9 @@ from mocapress.container import unpack
 from mocapress.container.limits import most_original
 from mocapress.errors import CorruptError, MissingModelError, MocapressError
 from mocapress.library.database import Database
-from mocapress.library.opened import OpenedClip, StoredMcz
+from mocapress.library.opened import OpenedClip
 from mocapress.library.rows import RUN_COLUMNS, Connection, Run, hash_of
+from mocapress.library.stored import StoredMcz
 from mocapress.models import Place
 
 _MOST_LINES = 20

@@ -1,17 +1,16 @@
-"""Clips of a library as its users see them."""
+"""Clips of a library as its users see them. Imports little, so that lists are quick."""
 
+import sqlite3
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
 
 from mocapress.errors import ParameterError
 from mocapress.library import names
-from mocapress.library.rows import Connection
-from mocapress.motion import Clip, Stream
 
 if TYPE_CHECKING:
-    from mocapress.library.library import Library
+    from mocapress.library.reading import Reading
+    from mocapress.motion import Clip
 
 _FACTS = (
     "id, clips.name, format, frames, channels, frame_time, size, sha256, modified, codec, "
@@ -24,7 +23,7 @@ _FACTS = (
 class StoredClip:
     """A clip in a library: facts about it now, its numbers when they are asked for."""
 
-    library: "Library" = field(repr=False, compare=False)
+    library: "Reading | None" = field(repr=False, compare=False)
     id: int
     """Stays the clip's as long as it is there, and is never another's."""
     name: str
@@ -45,6 +44,11 @@ class StoredClip:
     labels: tuple[str, ...]
 
     @property
+    def _open(self) -> "Reading":
+        assert self.library is not None  # only lists are made without
+        return self.library
+
+    @property
     def duration(self) -> float | None:
         """Seconds; None where the frame time is not known."""
         return None if self.frame_time is None else self.frames * self.frame_time
@@ -52,25 +56,25 @@ class StoredClip:
     @property
     def notes(self) -> dict[str, str]:
         """What is said about the clip."""
-        with self.library.db.reading() as connection:
+        with self._open.db.reading() as connection:
             return dict(
                 connection.execute(
                     "SELECT key, value FROM notes WHERE clip = ? ORDER BY key", [self.id]
                 )
             )
 
-    def load(self, frames: slice | None = None, *, columns: Sequence[str] | None = None) -> Clip:
+    def load(self, frames: slice | None = None, *, columns: Sequence[str] | None = None) -> "Clip":
         """Give the clip, or some of it; see ``Library.load``."""
-        return self.library.load(self, frames, columns=columns)
+        return self._open.load(self, frames, columns=columns)
 
     def read_bytes(self) -> bytes:
         """Give the original file; see ``Library.read_bytes``."""
-        return self.library.read_bytes(self)
+        return self._open.read_bytes(self)
 
 
 def select(
-    library: "Library",
-    connection: Connection,
+    library: "Reading | None",
+    connection: sqlite3.Connection,
     patterns: Sequence[str] = (),
     *,
     label: str | None = None,
@@ -97,7 +101,7 @@ def select(
     return [_stored(library, row) for row in rows]
 
 
-def by_id(library: "Library", connection: Connection, clip: int) -> StoredClip:
+def by_id(library: "Reading", connection: sqlite3.Connection, clip: int) -> StoredClip:
     """Give the clip of an id.
 
     Raises
@@ -115,7 +119,7 @@ def by_id(library: "Library", connection: Connection, clip: int) -> StoredClip:
     return _stored(library, row)
 
 
-def _stored(library: "Library", row: Sequence[Any]) -> StoredClip:
+def _stored(library: "Reading | None", row: Sequence[Any]) -> StoredClip:
     number, name, kind, frames, channels, time, size, sha256, modified, codec, skeleton, labels = (
         row
     )
@@ -134,37 +138,3 @@ def _stored(library: "Library", row: Sequence[Any]) -> StoredClip:
         skeleton,
         tuple(sorted(labels.split("\0"))) if labels else (),
     )
-
-
-def with_columns(clip: Clip, wanted: Sequence[str]) -> Clip:
-    """Give a clip of only those columns of its first stream that are named, in this order.
-
-    Parameters
-    ----------
-    clip
-        Any clip.
-    wanted
-        Names of columns, such as ``lfemur.rx``, or globs, such as ``lfemur.*``.
-
-    Raises
-    ------
-    ParameterError
-        When a name is none of the clip's.
-
-    """
-    places: list[int] = []
-    for pattern in wanted:
-        exact = [i for i, column in enumerate(clip.columns) if column.name == pattern]
-        found = exact or [
-            i for i, column in enumerate(clip.columns) if fnmatchcase(column.name, pattern)
-        ]
-        if not found:
-            some = ", ".join(column.name for column in clip.columns[:3])
-            raise ParameterError(
-                "no such column", expected=f"a name or glob, e.g. {some}", found=repr(pattern)
-            )
-        places += [place for place in found if place not in places]
-    columns = tuple(clip.columns[place] for place in places)
-    name = next(iter(clip.streams))
-    stream = Stream(clip.values[:, places], columns, clip.frame_time)
-    return Clip({name: stream}, clip.skeleton, clip.name, clip.metadata)

@@ -66,31 +66,34 @@ class Coder:
         """Code a file that was taken apart; nothing is shared with the clip ``without``."""
         kind = source.format.id if source.format else ""
         newest = 0
+        hashes: Hashes | None = None
         runs: tuple[Run, ...] = ()
         clip = parts.clip if parts is not None and parts.clip.frames else None
         if parts is not None and clip is not None and not unfit(parts, source.size):
-            newest, runs = self._runs(clip, digest, without)
+            newest, hashes, runs = self._runs(clip, digest, without)
         if parts is not None and clip is not None and runs:
             blob, failure = first_that_works(
                 self.codec, lambda way: self._rest(source, parts, runs, way)
             )
             if blob is not None:
-                hashes = self._anchors(clip, runs)
+                rest = self._anchors(clip, runs)
                 problems = [str(problem.error(source.name)) for problem in parts.problems]
                 why = "; ".join(filter(None, (failure, *problems))) or None
                 mcz = open_mcz(Source(blob))
-                return Coded(mcz, kind, clip.values.shape, runs, hashes, why, self._models, newest)
+                return Coded(mcz, kind, clip.values.shape, runs, rest, why, self._models, newest)
         made = compress_parts(
             source, parts, self.codec, with_skeleton=True, model=self.model, warning=warning
         )
-        mcz = open_mcz(Source(made.blob))
+        mcz = made.mcz or open_mcz(Source(made.blob))
         shape = clip.values.shape if clip else (0, 0)
-        hashes = self._anchors(clip, ()) if clip and mcz.head else None
+        if not self.codec.lossless or mcz.head is None or not clip or not clip.values.size:
+            hashes = None
         return Coded(mcz, kind, shape, (), hashes, made.warning, self._models, newest)
 
     def clip(self, clip: Clip) -> Coded:
         """Code a clip."""
-        mcz = open_mcz(Source(compress_clip(clip, self.codec, model=self.model).blob))
+        made = compress_clip(clip, self.codec, model=self.model)
+        mcz = made.mcz or open_mcz(Source(made.blob))
         hashes = self._anchors(clip, ())
         return Coded(mcz, None, clip.values.shape, (), hashes, None, self._models)
 
@@ -119,14 +122,18 @@ class Coder:
     def _models(self) -> tuple[Model, ...]:
         return () if self.model is None else (self.model,)
 
-    def _runs(self, clip: Clip, digest: bytes, without: int | None) -> tuple[int, tuple[Run, ...]]:
+    def _runs(
+        self, clip: Clip, digest: bytes, without: int | None
+    ) -> tuple[int, Hashes, tuple[Run, ...]]:
+        """Give the newest clip of the library, the anchors of a clip, and its runs."""
+        hashes = anchors(clip.values)
         with self.db.reading() as connection:
             newest = self.known.refresh(connection)
-            candidates = self.known.candidates(connection, digest, anchors(clip.values))
+            candidates = self.known.candidates(connection, digest, hashes)
             wanted = [other for other in candidates if other != without]
             if not self.codec.lossless:
-                return newest, self._same_file(clip, digest, wanted)
-            return newest, tuple(shared(self.db, clip, wanted, self.models))
+                return newest, hashes, self._same_file(clip, digest, wanted)
+            return newest, hashes, tuple(shared(self.db, clip, wanted, self.models))
 
     def _same_file(self, clip: Clip, digest: bytes, candidates: Sequence[int]) -> tuple[Run, ...]:
         """Find the equal file that was coded in the same way: a lossy codec gives the same."""

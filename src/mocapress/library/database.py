@@ -23,6 +23,8 @@ from mocapress.errors import (
 from mocapress.library import schema
 from mocapress.storage import write_whole
 
+WAIT = 10.0
+"""Seconds to wait for another process that writes, unless said otherwise."""
 _LEAST_SQLITE = (3, 37, 0)
 _CHECKPOINT = 2**14
 """Pages in the write-ahead log from which on they are written back."""

@@ -1,14 +1,11 @@
 """A library, open: what users of Python do with it."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self, overload
+from typing import TYPE_CHECKING
 
 from mocapress.api.clips import checked_codec
-from mocapress.api.loading import load_opened
-from mocapress.api.restoring import Restored, restore_opened
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.container import Companion
 from mocapress.errors import ParameterError
@@ -22,25 +19,17 @@ from mocapress.library.adding import (
     Extra,
     add_companion,
 )
-from mocapress.library.checking import Fault, check, verify_clip
-from mocapress.library.clips import StoredClip, by_id, select, with_columns
+from mocapress.library.clips import StoredClip, by_id
 from mocapress.library.coding import Coder
-from mocapress.library.database import Database
-from mocapress.library.exporting import export
-from mocapress.library.opened import OpenedClip
+from mocapress.library.database import WAIT, Database
+from mocapress.library.reading import APPEND, READ, Reading, Which
 from mocapress.library.removing import recompress, remove_clips
-from mocapress.library.sharing import Known
 from mocapress.models import Place, load_model
 from mocapress.motion import Clip
 from mocapress.source import Named, Source
 
 if TYPE_CHECKING:
-    import pandas as pd
-
-WAIT = 10.0
-READ, APPEND = "r", "a"
-Which = str | StoredClip | int
-"""A clip: its name, itself, or its id."""
+    pass
 
 
 def open_library(
@@ -82,250 +71,12 @@ def open_library(
     return Library(Database(path, writable=mode == APPEND, wait=wait), models)
 
 
-class Library:
+class Library(Reading):
     """A library, open; see ``open_library``. Threads may share it, and so may forked processes.
 
     Its clips are in the order of their names: ``len(lib)``, ``lib[0]``, ``lib[10:20]``, and a loop
     over them. ``lib["walk.amc"]`` is the clip of this name.
     """
-
-    def __init__(self, db: Database, models: Sequence[Place] = ()) -> None:
-        self.db = db
-        self.models = models
-        self._known = Known()
-        self._ids: tuple[tuple[int, int], list[int]] | None = None
-
-    @property
-    def path(self) -> Path:
-        """Of the file."""
-        return self.db.path
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Close the library. Where nobody else has it open, it is one file then."""
-        self.db.close()
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {
-            "path": self.path,
-            "mode": APPEND if self.db.writable else READ,
-            "wait": self.db.wait,
-            "models": self.models,
-        }
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        db = Database(state["path"], writable=state["mode"] == APPEND, wait=state["wait"])
-        self.__init__(db, state["models"])  # type: ignore[misc]
-
-    def __repr__(self) -> str:
-        """Name the file."""
-        return f"<Library {str(self.path)!r}>"
-
-    # Reading
-
-    def __len__(self) -> int:
-        with self.db.reading() as connection:
-            return int(connection.execute("SELECT count(*) FROM clips").fetchone()[0])
-
-    def __contains__(self, name: object) -> bool:
-        with self.db.reading() as connection:
-            return isinstance(name, str) and names.find(connection, name) is not None
-
-    def __iter__(self) -> Iterator[StoredClip]:
-        return iter(self.clips())
-
-    @overload
-    def __getitem__(self, key: str | int) -> StoredClip: ...
-    @overload
-    def __getitem__(self, key: slice) -> list[StoredClip]: ...
-    def __getitem__(self, key: str | int | slice) -> StoredClip | list[StoredClip]:
-        """Give the clip of a name, or clips by their places in the order of names.
-
-        Raises
-        ------
-        KeyError
-            When there is no clip of this name.
-        IndexError
-            When there are fewer clips.
-
-        """
-        with self.db.reading() as connection:
-            if isinstance(key, str):
-                found = names.find(connection, key)
-                if found is None:
-                    raise KeyError(key)
-                return by_id(self, connection, found)
-            ids = self._in_order()
-            if isinstance(key, slice):
-                return [by_id(self, connection, clip) for clip in ids[key]]
-            return by_id(self, connection, ids[key])
-
-    def _in_order(self) -> list[int]:
-        """Give all ids in the order of names, kept until the library changes."""
-        connection = self.db.connection
-        version: int = connection.execute("PRAGMA data_version").fetchone()[0]
-        state = version, connection.total_changes
-        if self._ids is None or self._ids[0] != state:
-            rows = connection.execute("SELECT id FROM clips ORDER BY name").fetchall()
-            self._ids = state, [clip for (clip,) in rows]
-        return self._ids[1]
-
-    def clips(
-        self,
-        glob: str | Iterable[str] = (),
-        *,
-        label: str | None = None,
-        min_duration: float | None = None,
-        skeleton: str | None = None,
-    ) -> list[StoredClip]:
-        """Give the clips that fulfil all conditions, in the order of their names.
-
-        Parameters
-        ----------
-        glob
-            A name, a folder, or a pattern in which ``*`` stands for any characters, those of
-            folders included; or several, of which one must fit.
-        label
-            One that they have.
-        min_duration
-            Seconds that they last at least. A clip whose frame time is not known, as that of most
-            AMC files, does not count.
-        skeleton
-            Name of the skeleton, or a pattern.
-
-        """
-        patterns = [glob] if isinstance(glob, str) else [*glob]
-        with self.db.reading() as connection:
-            return select(
-                self,
-                connection,
-                patterns,
-                label=label,
-                min_duration=min_duration,
-                skeleton=skeleton,
-            )
-
-    def load(
-        self,
-        clip: Which,
-        frames: slice | None = None,
-        *,
-        columns: Sequence[str] | None = None,
-        stream: str | None = None,
-        strict: bool = True,
-        errors: str = "raise",
-    ) -> Clip:
-        """Give a clip, or some of its frames and columns.
-
-        Parameters
-        ----------
-        clip
-            Its name.
-        frames
-            Only these, e.g. ``slice(100, 200)``; only the chunks they are in are read.
-        columns
-            Names or globs of columns, in the order that is wanted, e.g. ``["root.*"]``.
-        stream, strict, errors
-            As in ``mocapress.load``.
-
-        Raises
-        ------
-        ParameterError
-            When there is no such clip or column.
-        CorruptError
-            When the clip is damaged, as far as it was read.
-        FormatError
-            When the original is no motion file, or had lost frames and reading is strict.
-        MissingModelError
-            When the model that the clip needs is nowhere.
-
-        """
-        if errors not in ("raise", "skip"):
-            raise ParameterError("errors", expected="raise or skip", found=repr(errors))
-        with self.db.reading():
-            opened = self.opened(clip, salvage=errors == "skip")
-            loaded = load_opened(opened, frames, stream=stream, strict=strict)
-        return loaded if columns is None else with_columns(loaded, columns)
-
-    def read_bytes(self, clip: Which) -> bytes:
-        """Give the original file of a clip, byte for byte (of a lossy codec: as ``decompress``).
-
-        Raises
-        ------
-        CorruptError
-            When it is damaged.
-        UnsupportedError
-            When the clip was made of numbers, and there is no original.
-
-        """
-        return self.restore(clip).data
-
-    def restore(self, clip: Which, *, salvage: bool = False) -> Restored:
-        """Give the original file of a clip, or what is left of it; see ``decompress``."""
-        with self.db.reading():
-            return restore_opened(self.opened(clip, salvage=salvage))
-
-    def read_mcz(self, clip: Which) -> bytes:
-        """Give a clip as a ``.mcz``, with its skeleton and companions; chunks are not coded again.
-
-        Only a clip with frames that are those of another is.
-        """
-        with self.db.reading():
-            return export(self.db, self.opened(clip))
-
-    def opened(self, clip: Which, *, salvage: bool = False) -> OpenedClip:
-        """Open a clip; to be called and used within ``db.reading``."""
-        return OpenedClip(self.db, self._id(clip), self.models, salvage=salvage)
-
-    def _id(self, clip: Which) -> int:
-        if isinstance(clip, StoredClip | int):
-            return clip if isinstance(clip, int) else clip.id
-        with self.db.reading() as connection:
-            found = names.find(connection, clip)
-        if found is None:
-            raise ParameterError("no such clip", file=str(self.path), found=repr(clip))
-        return found
-
-    @property
-    def labels(self) -> dict[str, int]:
-        """All labels, and how many clips have each."""
-        with self.db.reading() as connection:
-            return dict(
-                connection.execute("SELECT label, count(*) FROM labels GROUP BY label ORDER BY 1")
-            )
-
-    def to_pandas(self) -> "pd.DataFrame":
-        """Give the view ``catalogue`` as a table, one row a clip; needs pandas.
-
-        Raises
-        ------
-        UnsupportedError
-            When pandas is not there.
-
-        """
-        from mocapress.errors import UnsupportedError
-
-        try:
-            import pandas as pd
-        except ImportError:
-            raise UnsupportedError(
-                "to_pandas needs pandas", expected="pip install pandas"
-            ) from None
-        with self.db.reading() as connection:
-            found = connection.execute("SELECT * FROM catalogue ORDER BY name")
-            return pd.DataFrame(found.fetchall(), columns=[part[0] for part in found.description])
-
-    # Writing
 
     def add(
         self,
@@ -469,20 +220,6 @@ class Library:
                 "DELETE FROM labels WHERE clip = ? AND label = ?",
                 [(number, label) for label in remove],
             )
-
-    # Checking
-
-    def verify(self, glob: str | Iterable[str] = ()) -> list[Fault]:
-        """Decode all clips, or some; give everything that is damaged, nothing where all is well."""
-        return [
-            fault
-            for clip in self.clips(glob)
-            for fault in verify_clip(self.db, clip.id, clip.name, self.models)
-        ]
-
-    def check(self) -> list[Fault]:
-        """Read everything and check its checksums without decoding; give what is damaged."""
-        return [fault for faults in check(self.db) for fault in faults]
 
 
 def _own_name(source: Source) -> str:

@@ -1,172 +1,19 @@
-"""Clips of a library as compressed files: put together from the tables as far as they are read."""
+"""Clips of a library, opened: what they have in chunks of their own, and what others have."""
 
-import sqlite3
-from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import accumulate, pairwise
 
 import numpy as np
 
 from mocapress.api.opening import Opened, Rows
 from mocapress.codecs import Model
-from mocapress.container import Damage, Head, Original
-from mocapress.container.chunks import entry_of, write_end
-from mocapress.container.head import join_parts
+from mocapress.container import Damage, Head
 from mocapress.container.limits import most_values
-from mocapress.container.original import read_problems, write_notes, write_original
-from mocapress.container.sections import section
-from mocapress.container.tags import MAGIC, VERSION, Tag
-from mocapress.errors import CorruptError, ParameterError
+from mocapress.errors import CorruptError
 from mocapress.library.database import Database
-from mocapress.library.rows import RUN_COLUMNS, Facts, Run, checksum, hash_of, read_clip
+from mocapress.library.rows import RUN_COLUMNS, Facts, Run
+from mocapress.library.stored import StoredMcz
 from mocapress.models import Place, load_model
-from mocapress.records import Reader
-from mocapress.source import Source
-
-
-class StoredMcz(Source):
-    """The ``.mcz`` that holds a clip's own chunks; each chunk is read when it is asked for.
-
-    Parameters
-    ----------
-    db, clip
-        The library, and the clip's id.
-    salvage
-        Whether chunks that cannot be read, and a wrong checksum of the clip's facts, are left to
-        be found as damage.
-
-    Raises
-    ------
-    CorruptError
-        When it cannot be read.
-    ParameterError
-        When there is no such clip.
-
-    """
-
-    def __init__(self, db: Database, clip: int, *, salvage: bool = False) -> None:
-        self.db, self.clip, self._salvage = db, clip, salvage
-        found = read_clip(db.connection, clip)
-        if found is None:
-            raise ParameterError("no such clip", file=str(db.path), found=f"id {clip}")
-        self.facts: Facts = found[0]
-        super().__init__(b"", self.facts.name)
-        self.sound = checksum(self.facts) == found[1]
-        """Whether the row of the clip has the right checksum."""
-        if not self.sound and not (salvage and _possible(self.facts)):
-            raise CorruptError("the facts have a wrong checksum", file=self.name)
-        rows = db.connection.execute(
-            "SELECT flags, first, frames, length(section) FROM chunks WHERE clip = ? "
-            "ORDER BY number",
-            [clip],
-        ).fetchall()
-        if any(flags < 0 or first < 0 or frames < 1 for flags, first, frames, _ in rows):
-            raise CorruptError("damaged: the list of chunks", file=self.name)
-        self._front = self._before_chunks()
-        self._starts = [*accumulate((row[3] for row in rows), initial=len(self._front))]
-        places = pairwise(self._starts)
-        entries = [
-            entry_of(flags, first, frames, begin, end)
-            for (flags, first, frames, _), (begin, end) in zip(rows, places, strict=True)
-        ]
-        self._end = section(Tag.END, write_end(entries))
-
-    @property
-    def size(self) -> int:
-        """Number of bytes."""
-        return int(self._starts[-1]) + len(self._end)
-
-    def read(self, start: int = 0, stop: int | None = None) -> bytes:
-        """Give bytes [start, stop), or as many of them as there are."""
-        stop = self.size if stop is None else min(stop, self.size)
-        parts = []
-        while start < stop:
-            begin, part = self._part(start)
-            parts.append(part[start - begin : stop - begin])
-            start = begin + len(part)
-        return parts[0] if len(parts) == 1 else b"".join(parts)
-
-    def _part(self, at: int) -> tuple[int, bytes]:
-        """Give the part of the file that holds a byte, and where it begins."""
-        number = bisect_right(self._starts, at) - 1
-        if number < 0:
-            return 0, self._front
-        begin = self._starts[number]
-        if number == len(self._starts) - 1:
-            return begin, self._end
-        size = self._starts[number + 1] - begin
-        found = b""
-        try:
-            row = self.db.connection.execute(
-                "SELECT section FROM chunks WHERE clip = ? AND number = ?", (self.clip, number)
-            ).fetchone()
-            found = row[0] if row else b""
-        except sqlite3.DatabaseError:
-            if not self._salvage:
-                raise
-        # What cannot be read has a wrong checksum, as it would in a file.
-        return begin, found if len(found) == size else bytes(size)
-
-    def _before_chunks(self) -> bytes:
-        facts = self.facts
-        parts = [MAGIC, bytes([VERSION])]
-        if facts.head is not None:
-            parts.append(section(Tag.HEAD, join_parts(self._skeleton(), facts.head)))
-        if facts.text is not None:
-            parts.append(section(Tag.FILE, write_original(self._original(facts.text))))
-        notes = self._notes()
-        if notes:
-            parts.append(section(Tag.NOTES, write_notes(notes)))
-        return b"".join(parts)
-
-    def _notes(self) -> dict[str, str]:
-        try:
-            return dict(
-                self.db.connection.execute(
-                    "SELECT key, value FROM notes WHERE clip = ? ORDER BY key", [self.clip]
-                )
-            )
-        except sqlite3.DatabaseError:
-            if not self._salvage:
-                raise
-            return {}
-
-    def _skeleton(self) -> bytes | None:
-        if self.facts.skeleton is None:
-            return None
-        return self._hashed("skeletons", "record", self.facts.skeleton)
-
-    def _original(self, text: int) -> Original:
-        facts = self.facts
-        packed = self._hashed("texts", "packed", text)
-        problems = read_problems(Reader(facts.problems or b"\0", "problems"))
-        kind = (facts.format or "") if facts.head is not None else ""
-        return Original(
-            kind, original_name(facts), facts.size or 0, facts.sha256 or b"", problems, packed
-        )
-
-    def _hashed(self, table: str, column: str, number: int) -> bytes:
-        row = self.db.connection.execute(
-            f"SELECT {column}, hash FROM {table} WHERE id = ?",  # noqa: S608
-            [number],
-        ).fetchone()
-        if row is None or hash_of(row[0]) != row[1]:
-            raise CorruptError(f"damaged: row {number} of {table}", file=self.name)
-        found: bytes = row[0]
-        return found
-
-
-def _possible(facts: Facts) -> bool:
-    """Say whether facts with a wrong checksum are such that a file can be put together."""
-    digest = facts.text is None or len(facts.sha256 or b"") == 32
-    return digest and (facts.size or 0) >= 0 and facts.frames >= 0
-
-
-def original_name(facts: Facts) -> str:
-    """Give the name of the original without folders, as a ``.mcz`` has it: in UTF-8."""
-    file = facts.name.rpartition("/")[2] if facts.file is None else facts.file
-    return file.encode(errors="surrogateescape").decode(errors="replace")
 
 
 class OpenedClip(Opened):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.codecs import Model
-from mocapress.container import Entry, Mcz
+from mocapress.container import Entry, Mcz, pack, unpack
 from mocapress.container.chunks import stream_and_flags
 from mocapress.library import names
 from mocapress.models import model_bytes
@@ -123,19 +123,19 @@ def text_id(connection: Connection, packed: bytes) -> int:
 
 
 def skeleton_id(connection: Connection, record: bytes, name: str, joints: int) -> int:
-    """Give the row of a skeleton, which is added where there is none yet."""
+    """Give the row of a skeleton, which is added where there is none yet; see ``write_parts``."""
     wanted = hash_of(record)
     # There are few: an index would cost more than it brings.
-    row = connection.execute(
-        "SELECT id FROM skeletons WHERE hash = ? AND record = ?", (wanted, record)
-    ).fetchone()
-    if row is None:
-        made = connection.execute(
-            "INSERT INTO skeletons(name, joints, hash, record) VALUES(?, ?, ?, ?)",
-            (name, joints, wanted, record),
-        )
-        return int(made.lastrowid or 0)
-    return int(row[0])
+    for number, packed in connection.execute(
+        "SELECT id, record FROM skeletons WHERE hash = ?", [wanted]
+    ):
+        if unpack(packed, "skeleton", len(record)) == record:
+            return int(number)
+    made = connection.execute(
+        "INSERT INTO skeletons(name, joints, hash, record) VALUES(?, ?, ?, ?)",
+        (name, joints, wanted, pack(record)),
+    )
+    return int(made.lastrowid or 0)
 
 
 def add_model(connection: Connection, model: Model) -> None:
@@ -151,7 +151,7 @@ def companion_id(
     name: str,
     kind: str,
     data: bytes,
-    pack: Callable[[], bytes],
+    packed: Callable[[], bytes],
     modified: int | None,
 ) -> int:
     """Give the row of a companion, which is added, or changed where its contents are others."""
@@ -162,7 +162,7 @@ def companion_id(
     ).fetchone()
     if row is not None and row[1] == digest:
         return int(row[0])
-    text = text_id(connection, pack())
+    text = text_id(connection, packed())
     values = (kind, len(data), digest, modified, text)
     if row is None:
         made = connection.execute(

@@ -1,11 +1,14 @@
 """``library list``."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mocapress.cli.library.opening import File, Label, Patterns, chosen, opened
+from mocapress.cli.library.opening import File, Label, Patterns, refuse_unknown, telling
 from mocapress.cli.options import Debug, Json
+
+if TYPE_CHECKING:
+    from mocapress.library import StoredClip
 
 
 def list_clips(
@@ -22,32 +25,34 @@ def list_clips(
     """List clips by name, one a line; with --long the columns are separated by tabs."""
     import json as jsonlib
     import sys
+    from contextlib import closing
     from dataclasses import fields
 
-    with opened(file, debug=debug) as library:
-        clips = chosen(library, patterns, label)
-        if json:
-            names = [field.name for field in fields(clips[0])][1:] if clips else []
-            rows = [
-                {name: getattr(clip, name) for name in names} | {"duration": clip.duration}
-                for clip in clips
-            ]
-            text = jsonlib.dumps(rows, indent=1)
-        elif long:
-            text = "\n".join(
-                "\t".join(
-                    (
-                        clip.name,
-                        clip.format or "-",
-                        str(clip.frames),
-                        "-" if clip.duration is None else f"{clip.duration:.3f}",
-                        clip.skeleton or "-",
-                        ",".join(clip.labels) or "-",
-                    )
-                )
-                for clip in clips
-            )
-        else:
-            text = "\n".join(clip.name for clip in clips)
-        if text:
-            sys.stdout.write(text + "\n")
+    from mocapress.library.clips import select
+    from mocapress.library.database import WAIT, Database
+
+    wanted = patterns or ()
+    with (
+        telling(file, debug=debug),
+        closing(Database(file, writable=False, wait=WAIT)) as db,
+        db.reading() as connection,
+    ):
+        clips = select(None, connection, wanted, label=label)
+        refuse_unknown(file, wanted, lambda pattern: bool(select(None, connection, [pattern])))
+    if json:
+        names = [field.name for field in fields(clips[0])][1:] if clips else []
+        rows = [
+            {name: getattr(clip, name) for name in names} | {"duration": clip.duration}
+            for clip in clips
+        ]
+        text = jsonlib.dumps(rows, indent=1)
+    else:
+        text = "\n".join(_line(clip) if long else clip.name for clip in clips)
+    if text:
+        sys.stdout.write(text + "\n")
+
+
+def _line(clip: "StoredClip") -> str:
+    duration = "-" if clip.duration is None else f"{clip.duration:.3f}"
+    facts = clip.format, str(clip.frames), duration, clip.skeleton, ",".join(clip.labels)
+    return "\t".join((clip.name, *(fact or "-" for fact in facts)))

@@ -1,6 +1,6 @@
 """What the commands of a library share: its arguments, opening it, choosing clips."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -30,17 +30,13 @@ Label = Annotated[
 
 
 @contextmanager
-def opened(
-    path: Path, mode: str = "r", *, debug: bool = False, models: "Sequence[Place]" = ()
-) -> "Iterator[Library]":
-    """Open a library; end with a line where that, or what is done with it, fails."""
+def telling(path: Path, *, debug: bool) -> Iterator[None]:
+    """End with a line where something fails that is done with a library."""
     from mocapress.cli.report import message, say
     from mocapress.errors import MocapressError
-    from mocapress.library import open_library
 
     try:
-        with open_library(path, mode, models=models) as library:
-            yield library
+        yield
     except (MocapressError, OSError, MemoryError) as error:
         if debug:
             raise
@@ -48,18 +44,33 @@ def opened(
         raise typer.Exit(1) from error
 
 
+@contextmanager
+def opened(
+    path: Path, mode: str = "r", *, debug: bool = False, models: "Sequence[Place]" = ()
+) -> "Iterator[Library]":
+    """Open a library; see ``telling``."""
+    from mocapress.library import open_library
+
+    with telling(path, debug=debug), open_library(path, mode, models=models) as library:
+        yield library
+
+
+def refuse_unknown(path: Path, patterns: Sequence[str], fits: Callable[[str], bool]) -> None:
+    """End where a pattern fits no clip."""
+    from mocapress.cli.report import say
+
+    for pattern in patterns:
+        if not fits(pattern):
+            say(f"{path}: no such clip: {pattern}")
+            raise typer.Exit(1)
+
+
 def chosen(
     library: "Library", patterns: Sequence[str] | None, label: str | None = None
 ) -> "list[StoredClip]":
     """Give the clips that are asked for; end where a pattern fits none."""
-    from mocapress.cli.report import say
-
-    found = library.clips(patterns or (), label=label)
-    for pattern in patterns or ():
-        if not library.clips(pattern):
-            say(f"{library.path}: no such clip: {pattern}")
-            raise typer.Exit(1)
-    return found
+    refuse_unknown(library.path, patterns or (), lambda pattern: bool(library.clips(pattern)))
+    return library.clips(patterns or (), label=label)
 
 
 def jobs_of(items: "Sequence[StoredClip | Item]") -> "list[Job]":
