@@ -381,12 +381,12 @@ def json_of_ends() -> bytes:
 
 @bomb
 def model_of_floats() -> bytes:
-    return model_bytes(Model("exact", record(2**24 - 64, bytes(2**24 - 64), 0)))
+    return model_bytes(Model("exact", record(2**23 - 64, bytes(2**23 - 64), 0)))
 
 
 @bomb
 def model_of_columns() -> bytes:
-    count = 3 * 2**20
+    count = 3 * 2**19
     index = np.arange(2**21, 2**21 + count, dtype=np.uint32)
     pairs = np.zeros((count, 5), np.uint8)
     for place in range(3):
