@@ -4,10 +4,13 @@
 
 Repeats the CMU sample to 20,000 frames, embeds it both ways, and opens each page in Chromium with
 software rendering, as the tests do. Also says how long the page was busy at a stretch meanwhile,
-and what load the machine had, of which the times depend.
+and what load the machine had, on which these times depend; and how much processor time the worker's
+part takes (benchmarks/page_reading.mjs), which hardly depends on it.
 """
 
 import os
+import shutil
+import subprocess
 import sys
 import tempfile
 import time
@@ -36,6 +39,12 @@ def main(frames: int) -> None:
     rows = np.resize(np.arange(clip.frames), frames)
     clip = clip.with_frames(clip.values[rows], clip.frame_time)
     made = {"exact": embed.exact(clip), "diffma": embed.approximate(clip, 0.01)}
+    if node := shutil.which("node"):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "exact.mcz"
+            file.write_bytes(mp.compress(clip))
+            script = ROOT / "benchmarks/page_reading.mjs"
+            subprocess.run([node, script, file], check=True)
     with chromium() as browser, tempfile.TemporaryDirectory() as folder:
         for way, content in made.items():
             file = Path(folder) / f"{way}.html"

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from mocapress.codecs import Model
 from mocapress.codecs.diffma.coding import Plan
 from mocapress.codecs.diffma.payload import pack_header as diffma_header
 from mocapress.codecs.exact import Exact
@@ -29,6 +30,7 @@ from mocapress.formats.layout_record import write_layout
 from mocapress.formats.number_formats import SHORTEST
 from mocapress.formats.patterns import References
 from mocapress.formats.row_templates import RowTemplate
+from mocapress.models import model_bytes
 from mocapress.motion import Column, Stream
 from mocapress.motion.columns import numbered_columns
 from mocapress.records import Writer
@@ -327,3 +329,67 @@ def masks() -> bytes:
     header = [record(0), record(1, 1), record(0), record(0), record(0), record(1, 0, 1), record(0)]
     header += [record(count), bytes(8 * count), record(1, 0), record(1, 0), record(0)]
     return of_codec_header(1, 2**20, b"".join(header), b"\1\0" * count)
+
+
+def xz(text: bytes) -> bytes:
+    return lzma.compress(text, preset=6)
+
+
+_MOST = 2**26
+
+
+@bomb
+def json_of_floats() -> bytes:
+    return xz(b'{"channels":[' + b"0," * ((_MOST - 20) // 2) + b"0]}")
+
+
+@bomb
+def json_of_lists() -> bytes:
+    return xz(b'{"channels":[' + b"[]," * ((_MOST - 20) // 3) + b"0]}")
+
+
+@bomb
+def json_of_names() -> bytes:
+    return xz(b'{"channels":[' + b'"",' * ((_MOST - 20) // 3) + b'""]}')
+
+
+@bomb
+def json_of_table() -> bytes:
+    return xz(
+        b'{"channels":["a"],"params":{"bits":6,"window":8,"bound":1},'
+        b'"records":{"b":["0"],"t":[[' + b"0," * ((_MOST - 200) // 2) + b"0]]}}"
+    )
+
+
+@bomb
+def json_of_blanks() -> bytes:
+    return xz(b" " * _MOST)
+
+
+@bomb
+def json_of_one_name() -> bytes:
+    return xz(b'{"channels":["' + b"a" * _MOST + b'"]}')
+
+
+@bomb
+def json_of_ends() -> bytes:
+    return xz(
+        b'{"skeleton":{"rotation":"fixed","columns":[],"joints":[{"name":"a","parent":-1,'
+        b'"offset":[0,0,0],"ends":[' + b"[0,0,0]," * ((_MOST - 200) // 8) + b"[0,0,0]]}]}}"
+    )
+
+
+@bomb
+def model_of_floats() -> bytes:
+    return model_bytes(Model("exact", record(2**24 - 64, bytes(2**24 - 64), 0)))
+
+
+@bomb
+def model_of_columns() -> bytes:
+    count = 3 * 2**20
+    index = np.arange(2**21, 2**21 + count, dtype=np.uint32)
+    pairs = np.zeros((count, 5), np.uint8)
+    for place in range(3):
+        pairs[:, place] = (index >> 7 * place) & 127 | 128
+    pairs[:, 3] = (index >> 21) & 127
+    return model_bytes(Model("exact", record(0, count) + pairs.tobytes()))

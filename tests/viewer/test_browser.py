@@ -268,6 +268,19 @@ def test_the_page_goes_on_while_a_file_is_read(visit: Visit, samples: Path, tmp_
     assert visit.page.evaluate("drawn") > 1  # at most once, if reading held the page up
 
 
+def test_a_long_clip_shows_its_first_frame_before_it_is_read(
+    visit: Visit, samples: Path, tmp_path: Path
+) -> None:
+    made = mp.read(samples / "cmu_01_01.amc")
+    rows = np.resize(np.arange(made.frames), 30_000)
+    long = embed.exact(made.with_frames(made.values[rows], made.frame_time), level=9)
+    visit.open(page.document([long]), tmp_path)
+    assert visit.text("#frame") == "1 / 512"
+    assert coloured(visit.pixels(), 2) > 500
+    visit.until("document.querySelector('#frame').textContent.endsWith('/ 30000')")
+    visit.until("document.body.dataset.frame > 3")
+
+
 DECODE = """async ([modules, text]) => {
     const urls = new Map();
     for (const [path, source] of modules) {

@@ -39,18 +39,24 @@ export class App {
 
   /** Show the clips that the page carries. */
   async openEmbedded(text) {
-    const { clips, errors } = await this.reader.embedded(text);
-    this.#open(clips, errors, "replace");
-    this.player.play(clips.length > 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches);
+    const shown = await this.#read("replace", (begun) => this.reader.embedded(text, begun));
+    this.player.play(shown && !matchMedia("(prefers-reduced-motion: reduce)").matches);
   }
 
   /** Show files; of a file that is broken, a message says what is wrong with it. */
   async openFiles(files, how) {
+    if (await this.#read(how, (begun) => this.reader.files(files, begun))) this.player.play(true);
+  }
+
+  /** Show what is read, of long clips the beginning while the rest is read; whether there is any. */
+  async #read(how, read) {
     document.body.classList.add("reading");
-    const { clips, errors } = await this.reader.files(files);
+    const { clips, errors } = await read((beginning) => {
+      if (how === "replace") this.#open(beginning.clips, [], how);
+    });
     document.body.classList.remove("reading");
     this.#open(clips, errors, how);
-    if (clips.length) this.player.play(true);
+    return clips.length > 0;
   }
 
   #open(clips, errors, how) {

@@ -12,7 +12,7 @@ from mocapress.codecs.diffma.document import Document, read_document
 from mocapress.codecs.fallback import naming_faults
 from mocapress.codecs.loss import Loss
 from mocapress.container.columns import Columns, bones_of, read_columns, write_columns
-from mocapress.container.limits import most_printed
+from mocapress.container.limits import most_json, most_json_parts, most_printed
 from mocapress.container.packing import pack, unpack
 from mocapress.errors import (
     CorruptError,
@@ -39,8 +39,7 @@ _FOR_TEXT = [
         "pb": 0,
     }
 ]
-# Texts above this size, and decoders that want more memory, are refused.
-_MOST_TEXT = 1 << 28
+# Decoders that want more memory are refused.
 _MOST_MEMORY = 1 << 27
 
 
@@ -151,13 +150,20 @@ def open_json(data: bytes | memoryview) -> Document:
     """
     data = bytes(data)
     if data[:6] == _XZ:
+        most = most_json(len(data))
         decoder = lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=_MOST_MEMORY)
         try:
-            data = decoder.decompress(data, max_length=_MOST_TEXT)
+            data = decoder.decompress(data, max_length=most)
         except lzma.LZMAError as error:
             raise CorruptError(f"xz: cannot be unpacked ({error})") from error
         if not decoder.eof or decoder.unused_data:
-            raise CorruptError(f"xz: cut off, or too long: more than {_MOST_TEXT} bytes unpacked")
+            raise CorruptError(f"xz: cut off, or too long: more than {most} bytes unpacked")
+    # No opcode is a comma, a bracket or a colon, so they count what becomes an object in memory.
+    parts, most = sum(map(data.count, (b",", b"[", b":"))), most_json_parts(len(data))
+    if parts > most:
+        raise FormatError(
+            "$", expected=f"at most {most} numbers, texts and lists", found=str(parts)
+        )
     return read_document(data)
 
 

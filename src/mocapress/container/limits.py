@@ -44,6 +44,16 @@ def most_printed(size: int, values: int) -> int:
     return size + 32 * values + 2**16
 
 
+def most_json(packed: int) -> int:
+    """Give how large a DiffMA JSON may be that is packed in so many bytes."""
+    return 2**24 + 2**5 * packed
+
+
+def most_json_parts(length: int) -> int:
+    """Give how many numbers, texts and lists may be in a DiffMA JSON of so many bytes."""
+    return 2**20 + length // 4
+
+
 def check_values(values: int, length: int) -> None:
     """See that a file of so many bytes may hold so many numbers.
 

@@ -9,7 +9,7 @@ from mocapress.records import Reader, Writer
 
 MAGIC = b"\x89MCM"
 VERSION = 1
-LARGEST_PAYLOAD = 2**26
+LARGEST_PAYLOAD = 2**24
 LONGEST_HEADER = 2**12
 """No header reaches further into a file."""
 LONGEST_FILE = LARGEST_PAYLOAD + 2 * LONGEST_HEADER

@@ -8,6 +8,7 @@
  * @property {number|null} frameTime seconds; null where the file does not say
  * @property {"deg"|"rad"} [angleUnit] of the channels, where not the skeleton's
  * @property {number} [maxError] that no value exceeds, where that was asked for
+ * @property {boolean} [more] whether these are only the first frames of many
  * @property {string[]} [notes] what the page should say of it
  */
 

@@ -9,15 +9,16 @@ import { readMcz } from "./mcz.js";
  *
  * @param {string} text JSON
  * @param {import("../../mcz/assets.js").Assets} assets
+ * @param {boolean} [early] whether of long clips only the first frames are read
  * @returns {Promise<{clips: import("./clip.js").Clip[], errors: string[]}>}
  */
-export async function embeddedClips(text, assets) {
+export async function embeddedClips(text, assets, early = false) {
   const clips = [];
   const errors = [];
   for (const { name, mcz, diffma, angleUnit, maxError } of JSON.parse(text).clips) {
     try {
       const clip = mcz
-        ? await readMcz(bytesOf(mcz), [], null, assets)
+        ? await readMcz(bytesOf(mcz), [], null, assets, early)
         : { ...fromDiffma(diffma), angleUnit, maxError };
       clips.push({ ...clip, name });
     } catch (error) {

@@ -13,15 +13,16 @@ const MOST_JSON = 2 ** 29; // bytes: as long as a text can be in a browser
  *
  * @param {{name: string, bytes: Uint8Array}[]} files
  * @param {import("../../mcz/assets.js").Assets} assets
+ * @param {boolean} [early] whether of long clips only the first frames are read
  * @returns {Promise<{clips: import("./clip.js").Clip[], errors: string[]}>}
  */
-export async function readFiles(files, assets) {
+export async function readFiles(files, assets, early = false) {
   const clips = [];
   const errors = [];
   const motions = files.filter((file) => !["asf", "mcm"].includes(ending(file)));
   for (const file of motions.length ? motions : files) {
     try {
-      clips.push({ ...(await readFile(file, files, assets)), name: file.name });
+      clips.push({ ...(await readFile(file, files, assets, early)), name: file.name });
     } catch (error) {
       errors.push(message(error, file.name));
     }
@@ -29,7 +30,7 @@ export async function readFiles(files, assets) {
   return { clips, errors };
 }
 
-async function readFile(file, files, assets) {
+async function readFile(file, files, assets, early) {
   const among = (kind) => files.filter((other) => ending(other) === kind);
   switch (ending(file)) {
     case "bvh":
@@ -44,7 +45,7 @@ async function readFile(file, files, assets) {
     }
     case "mcz": {
       const models = among("mcm").map(({ bytes }) => bytes);
-      return readMcz(file.bytes, models, skeletonOf(file, among("asf")), assets);
+      return readMcz(file.bytes, models, skeletonOf(file, among("asf")), assets, early);
     }
     case "mcm":
       throw new FileError("a model without motion", { expected: "a .mcz dropped with it" });

@@ -3,6 +3,7 @@ import { FileError } from "./file_error.js";
 import { skeletonOfBones } from "./motion_file.js";
 
 const MOST_VALUES = 5e7; // 400 MB
+const LONG = 4096; // frames
 
 /**
  * Read a .mcz file: its first stream is played.
@@ -12,15 +13,18 @@ const MOST_VALUES = 5e7; // 400 MB
  * @param {{name: string, bytes: Uint8Array}|null} beside the ASF of an AMC, for where the file has no
  *     skeleton
  * @param {import("../../mcz/assets.js").Assets} assets
+ * @param {boolean} [early] whether only the first frames are decoded, where there are many
  * @returns {Promise<import("./clip.js").Clip>}
  * @throws {FileError|import("../../mcz/error.js").MczError}
  */
-export async function readMcz(bytes, models, beside, assets) {
+export async function readMcz(bytes, models, beside, assets, early = false) {
   const mcz = await openMcz(bytes, assets);
   const main = mcz.streams.findIndex(({ kind }) => kind === "channels");
   if (main < 0) throw new FileError("no stream that this page knows");
   const { columns, frameTime, name } = mcz.streams[main];
-  const frames = mcz.chunks[main].reduce((sum, chunk) => sum + chunk.frames, 0);
+  const total = mcz.chunks[main].reduce((sum, chunk) => sum + chunk.frames, 0);
+  const more = early && total > LONG;
+  const frames = more ? mcz.chunks[main][0].frames : total;
   if (frames * columns.length > MOST_VALUES) {
     throw new FileError("too many frames and channels", {
       expected: `a product of at most ${MOST_VALUES}`,
@@ -35,6 +39,7 @@ export async function readMcz(bytes, models, beside, assets) {
         channel[frame] = chunk.values[at];
       }
     });
+    if (more) break;
   }
   const unit = columns.find(({ kind }) => kind[0] === "r")?.unit;
   const others = mcz.streams.filter((_, i) => i !== main).map((stream) => stream.name);
@@ -48,7 +53,8 @@ export async function readMcz(bytes, models, beside, assets) {
     others.length ? `only stream ${name} is shown, not ${others.join(", ")}` : "",
   ];
   const angleUnit = radians || unit === "deg" ? unit : undefined;
-  return { names, frames, channels, skeleton, frameTime, angleUnit, notes: notes.filter(Boolean) };
+  const own = { names, frames, channels, skeleton, frameTime, angleUnit };
+  return { ...own, notes: notes.filter(Boolean), more };
 }
 
 function ownSkeleton(skeleton, columns) {

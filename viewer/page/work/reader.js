@@ -12,37 +12,44 @@ export class Reader {
   /** @param {Worker} worker that runs work/worker.js */
   constructor(worker) {
     this.worker = worker;
-    worker.addEventListener("message", ({ data: { id, read } }) => {
-      this.#waiting.get(id)(read);
-      this.#waiting.delete(id);
+    worker.addEventListener("message", ({ data: { id, early, read } }) => {
+      const { done, begun } = this.#waiting.get(id);
+      if (early) begun(read);
+      else {
+        done(read);
+        this.#waiting.delete(id);
+      }
     });
     worker.addEventListener("error", ({ message }) => {
       const read = { clips: [], errors: [`This page cannot read files in this browser (${message}).`] };
-      for (const done of this.#waiting.values()) done(read);
+      for (const { done } of this.#waiting.values()) done(read);
       this.#waiting.clear();
     });
   }
 
   /**
    * @param {{name: string, bytes: Uint8Array}[]} files which are handed over
+   * @param {function(Read): void} begun is given the beginnings of clips, where some are long
    * @returns {Promise<Read>}
    */
-  files(files) {
-    return this.#ask({ files }, files.map(({ bytes }) => bytes.buffer));
+  files(files, begun) {
+    const buffers = files.map(({ bytes }) => bytes.buffer);
+    return this.#ask({ files }, begun, buffers);
   }
 
   /**
    * @param {string} text JSON: the clips that the page carries
+   * @param {function(Read): void} begun as of `files`
    * @returns {Promise<Read>}
    */
-  embedded(text) {
-    return this.#ask({ text });
+  embedded(text, begun) {
+    return this.#ask({ text }, begun, []);
   }
 
-  #ask(question, transfer = []) {
+  #ask(question, begun, transfer) {
     return new Promise((done) => {
       const id = this.#count++;
-      this.#waiting.set(id, done);
+      this.#waiting.set(id, { done, begun });
       this.worker.postMessage({ id, ...question }, transfer);
     });
   }

@@ -2,7 +2,7 @@
 import { Assets } from "../../mcz/assets.js";
 import { embeddedClips } from "../reading/embedded.js";
 import { FileError } from "../reading/file_error.js";
-import { message, readFiles } from "../reading/files.js";
+import { message as messageOf, readFiles } from "../reading/files.js";
 import { placed } from "./placing.js";
 
 let assets;
@@ -20,19 +20,33 @@ export function begin(carried) {
   });
 }
 
-/** @param {{id: number, files?: {name: string, bytes: Uint8Array}[], text?: string}} question */
+/**
+ * Read files or what the page carries; of long clips first only the beginning, which is told early.
+ *
+ * @param {{id: number, files?: {name: string, bytes: Uint8Array}[], text?: string}} question
+ */
 export async function answer({ id, files, text }) {
-  const { clips, errors } = files ? await readFiles(files, assets) : await embeddedClips(text, assets);
+  const read = (early) =>
+    files ? readFiles(files, assets, early) : embeddedClips(text, assets, early);
+  let found = await read(true);
+  if (found.clips.some(({ more }) => more)) {
+    await tell({ id, early: true }, found);
+    found = await read(false);
+  }
+  await tell({ id, early: false }, found);
+}
+
+async function tell(message, { clips, errors }) {
   const made = [];
   for (const clip of clips) {
     try {
       made.push(await placed(clip, assets));
     } catch (error) {
-      errors.push(message(error, clip.name));
+      errors.push(messageOf(error, clip.name));
     }
   }
   const buffers = made.flatMap(({ channels, positions }) => [...channels, positions].map(bufferOf));
-  postMessage({ id, read: { clips: made, errors } }, [...new Set(buffers)]);
+  postMessage({ ...message, read: { clips: made, errors } }, [...new Set(buffers)]);
 }
 
 function bufferOf({ buffer }) {

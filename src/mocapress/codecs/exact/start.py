@@ -14,6 +14,8 @@ Learned = tuple[list[float], list[list[float]]]
 
 _MANTISSA = np.uint32(0xFFFFF000)
 _LARGEST = 1e29
+_MOST_COLUMNS = 2**18
+"""As many as a file may have: docs/format.md, "Limits"."""
 
 
 @dataclass(slots=True)
@@ -57,7 +59,7 @@ def start_of(model: Model | None) -> Start:
         return Start()
     reader = Reader(model.payload, "exact model")
     shared = _read(reader)
-    columns = {reader.integer(): _read(reader) for _ in range(reader.count(2))}
+    columns = {reader.integer(): _read(reader) for _ in range(reader.integer(_MOST_COLUMNS))}
     reader.end()
     return Start(shared, columns)
 
