@@ -148,6 +148,18 @@ def test_members_lead_nowhere_else(samples: Path, tmp_path: Path) -> None:
     assert mocapress("library", "list", path).output == "c.bvh\n"
 
 
+def test_files_that_would_have_one_name_are_refused(samples: Path, tmp_path: Path) -> None:
+    for folder in "ab":
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "x.bvh").write_bytes((samples / BVH).read_bytes())
+    path = tmp_path / "lib.mocapdb"
+    done = mocapress("library", "add", path, tmp_path / "a", tmp_path / "b")
+    assert done.exit_code == 2
+    assert "would both be x.bvh" in done.output
+    assert mocapress("library", "add", path, tmp_path / "a").exit_code == 0
+    assert mocapress("library", "add", path, tmp_path / "b", "--into", "b").exit_code == 0
+
+
 def test_ctrl_c_keeps_what_is_done(tmp_path: Path, take: tuple[bytes, list[bytes]]) -> None:
     header, rows = take
     (tmp_path / "clips").mkdir()

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import BinaryIO
 
-from mocapress.cli.batch import STREAM, Job, find, is_folder
+from mocapress.cli.batch import STREAM, Job, find, is_folder, usage
 from mocapress.container import Companion
 from mocapress.errors import FormatError, ParameterError
 from mocapress.formats import by_name, formats, suffixes
@@ -85,7 +85,9 @@ class Inputs:
     def jobs(self) -> "Sequence[Job] | Iterator[Job]":
         """Give a job for each file; of archives as they are read."""
         if not any(_is_archive(path) for path in self.paths):
-            return [job for path in self.paths for job in find([path], endings()) if _shared(job)]
+            jobs = [job for path in self.paths for job in find([path], endings()) if _shared(job)]
+            _refuse_equal(jobs)
+            return jobs
         return self._streamed()
 
     def _streamed(self) -> Iterator[Job]:
@@ -228,3 +230,16 @@ def _shared(job: Job) -> bool:
     except OSError:
         job.share = 0  # which it will fail at
     return True
+
+
+def _refuse_equal(jobs: Sequence[Job]) -> None:
+    """Refuse different files that would have one name: the last would replace the others."""
+    sources: dict[Path, Path] = {}
+    for job in jobs:
+        own = job.source.relative_to(job.base)
+        other = sources.setdefault(own, job.source)
+        if other != job.source:
+            usage(
+                f"{other} and {job.source} would both be {own} in the library; nothing was added; "
+                "--into gives one of them another folder"
+            )
