@@ -45,7 +45,7 @@ int main() {
   bool same = true;
   const auto motion = check::motion(kFrames, kChannels, 1);
   const auto noise = check::noise(60 * kChannels, 2);
-  for (const int level : {1, 2, 6, 9}) {
+  for (const int level : {1, 2, 3, 4, 5, 6, 7, 8, 9}) {
     same &= check_one("on a grid", kChannels, motion, mocapress::Line::decimals, 4, level);
     same &= check_one("in six digits", kChannels, motion, mocapress::Line::significant, 6, level);
     same &= check_one("printed floats", kChannels, motion, mocapress::Line::printed32, 6, level);

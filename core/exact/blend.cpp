@@ -33,6 +33,7 @@ void judge(const Block* values, const Block* means, const Block* scales, const B
 
 Blends::Blends(std::size_t channels, std::size_t predictors, std::size_t memories)
     : predictors_(predictors), means_(channels, 0), values_(channels, 0), scales_(channels, 1) {
+  for (std::size_t i = 0; i < 17; ++i) shares_[i] = 1 / static_cast<double>(i);
   if (predictors < 2) return;
   for (std::size_t k = 0; k < memories; ++k) {
     memories_.push_back({ParallelChains(channels, predictors, kFadings[k], kRidge),
@@ -44,9 +45,16 @@ double Blends::predict(std::size_t channel, std::span<const double> predictions,
                        std::size_t to) {
   double mean = 0;
   for (std::size_t i = from; i < to; ++i) mean += predictions[i];
-  mean /= static_cast<double>(to - from);
+  mean *= shares_[to - from];
   means_[channel] = mean;
   if (memories_.empty()) return mean;
+  if (memories_.size() == 1) {
+    Memory& memory = memories_[0];
+    for (std::size_t i = 1; i < predictors_; ++i) {
+      memory.chains.see(channel, i - 1, predictions[i] - mean);
+    }
+    return mean + (memory.guesses[channel] = memory.chains.predicted(channel));
+  }
   double weights = 0;
   double sum = 0;
   for (Memory& memory : memories_) {

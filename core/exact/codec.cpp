@@ -76,7 +76,8 @@ std::vector<Part> parts(const Clip& clip) {
 
 }  // namespace
 
-Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* learned) {
+Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* learned,
+             std::vector<float>* seen) {
   if (clip.level <= kFastLevels) return encode_fast(values, frames, clip, learned);
   RangeWriting side;
   const std::size_t count = clip.columns.size();
@@ -84,6 +85,7 @@ Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* 
   for (std::size_t f = 0; f < frames; ++f) cuts[f] = is_cut(values, frames, count, f);
   for (const Part& part : parts(clip)) {
     Model model(part.clip());
+    model.show_network(seen);
     std::vector<double> row(part.count);
     for (std::size_t f = 0; f < frames; ++f) {
       std::copy_n(values + f * count + part.from, part.count, row.data());

@@ -45,7 +45,10 @@ struct Clip {
 
 // Codes `frames` x columns.size() values, row by row, as one chunk that needs no other. Where
 // `learned` is given, it is filled with what the coder knows in the end.
-Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* learned = nullptr);
+//
+// Where `seen` is given, what the network of levels 7 to 9 sees of each number is added to it.
+Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* learned = nullptr,
+             std::vector<float>* seen = nullptr);
 
 // The inverse. Throws std::invalid_argument when `payload` is not what `encode` makes.
 //

@@ -58,7 +58,12 @@ struct Variable {
   std::uint8_t age;  // in frames, of `past`
 };
 
+// Which of a channel's predictors an expert is to the last stage; the last has no place there.
+inline constexpr std::size_t kLimbSlot = 0, kGuessSlot = 1, kOwnSlot = 2, kMoveSlot = 3,
+                             kWholeSlot = 4, kNoSlot = 5;
+
 struct ExpertPlan {
+  std::size_t slot;
   int order;  // of the differences that are the chain's variables
   double fading;
   std::vector<Variable> variables;
@@ -68,6 +73,7 @@ class Expert {
  public:
   Expert(ExpertPlan plan, std::size_t channels);
 
+  std::size_t slot() const { return plan_.slot; }
   bool predicts(std::size_t channel) const { return target_[channel] >= 0; }
 
   void begin();

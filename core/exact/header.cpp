@@ -16,13 +16,13 @@
 namespace mocapress::exact {
 namespace {
 
-constexpr std::uint64_t kModel = 1, kOwnCouplings = 2, kSkeleton = 4;
+constexpr std::uint64_t kModel = 1, kOwnCouplings = 2, kLower = 4, kSkeleton = 8;
 enum Role : std::uint8_t { kPredicted, kConstant, kCopy, kNoise, kRoles };
 constexpr int kTurns = 3, kLines = 7, kLineDigits = 32, kExponentStep = 8, kMostExponent = 1000;
 constexpr std::size_t kTogether = 1024, kMostPlaces = 1 << 16, kMostTouching = 12;
 constexpr std::uint64_t kMostSources = 6, kMostTargets = 3;
 constexpr std::uint64_t kJointShapes = 243, kJointOnes = 9, kJointNumbers = 5, kJointBits = 11;
-constexpr std::uint64_t kKinds = 8;
+constexpr std::uint64_t kKinds = 8, kMostLevel = 9;
 constexpr std::size_t kNowhere = ~std::size_t{0};
 
 using Places = std::vector<std::size_t>;  // of columns; targets in the order of coding
@@ -218,7 +218,9 @@ std::vector<float> read_floats(Record& record) {
 
 Header read_header(ByteView header, std::size_t columns) {
   Record record(header);
-  const std::uint64_t flags = record.integer(kModel + kOwnCouplings + kSkeleton);
+  const std::uint64_t flags = record.integer(kModel + kOwnCouplings + kLower + kSkeleton);
+  const std::uint64_t level = (flags & kLower) != 0 ? record.integer(kMostLevel) : 0;
+  if ((flags & kLower) != 0 && level == 0) fail("a level that there is not");
   const bool skeleton = (flags & kSkeleton) != 0, own = (flags & kOwnCouplings) != 0;
   if (skeleton ? columns != kSkeletonChannels : own) fail("channels of another skeleton");
   const auto roles = record.palette(columns, kTurns * kRoles - 1);
@@ -277,6 +279,7 @@ Header read_header(ByteView header, std::size_t columns) {
   std::ranges::copy(by_role[kNoise], std::back_inserter(made.coded));
   for (const auto c : made.coded) made.columns.push_back(all[c]);
   for (const auto& coupling : couplings) made.couplings.push_back(coupled(coupling, order));
+  made.level = static_cast<int>(level);
   made.has_model = (flags & kModel) != 0;
   return made;
 }
@@ -305,7 +308,8 @@ void decode(ByteView payload, double* values, std::size_t frames, std::size_t co
   const ByteView own = header.beside.take(payload, frames, masks);
   std::vector<double> rows(frames * coded);
   if (coded > 0 || !own.empty()) {
-    decode(own, rows.data(), frames, Clip{header.columns, header.couplings, level, start});
+    const int used = header.level > 0 ? header.level : level;
+    decode(own, rows.data(), frames, Clip{header.columns, header.couplings, used, start});
   }
   for (std::size_t f = 0; f < frames; ++f) {
     double* const row = values + f * columns;

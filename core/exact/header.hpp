@@ -20,6 +20,7 @@ struct Header {
   std::vector<std::pair<std::size_t, std::size_t>> copies;  // a column, and the one it copies
   Restoring beside;
   bool has_model = false;
+  int level = 0;  // where it is another than the clip's; else 0
 };
 
 // All below `fail` where the bytes are not what an encoder makes.

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -19,7 +20,9 @@
 #include "exact/codec.hpp"
 #include "exact/expert.hpp"
 #include "exact/kinematics.hpp"
+#include "exact/last.hpp"
 #include "exact/lawful.hpp"
+#include "exact/network.hpp"
 #include "exact/noise.hpp"
 #include "exact/own.hpp"
 #include "exact/plan.hpp"
@@ -34,12 +37,17 @@ inline constexpr double kFloor = 0.1;  // in steps: as close as a prediction can
 inline constexpr double kFarthest = 20;         // in scales: an error beyond counts as that
 inline constexpr double kRounding = 0.15;       // in steps: what rounding adds to the scale
 inline constexpr std::uint32_t kNoCut = 65512;  // its chance, in 1/65536
+// The first levels that have them.
+inline constexpr int kLastStageFrom = 5, kNetworkFrom = 7, kMemoriesFrom = 9;
 
 // One channel: everything about it that the channels do not share.
 struct Channel {
   NumberLine line;
-  double unit;  // from numbers to levels
+  double unit;      // from numbers to levels
+  double per_unit;  // and back
+  double share;     // of each expert in a mean
   std::vector<std::size_t> experts;
+  std::vector<std::size_t> slots;  // of the experts
   std::optional<Turns> turns;
   Lawful* law;  // or none
   Blends* blends = nullptr;
@@ -75,6 +83,7 @@ class Model {
     const auto known = columns.first(count_);
     if (knows_skeleton(known, clip.level)) kinematics_.emplace(known);
     Plans plan = plans(known, clip.couplings, clip.level);
+    has_own_ = plan.before_own != kNoOwn;
     for (auto& expert : plan.experts) experts_.emplace_back(std::move(expert), count_);
     for (std::size_t c = 0; c < count_; ++c) {
       const NumberLine line(columns[c].line, columns[c].digits);
@@ -83,20 +92,28 @@ class Model {
         if (e == plan.before_own) experts.push_back(kOwn);
         if (e < experts_.size() && experts_[e].predicts(c)) experts.push_back(e);
       }
+      std::vector<std::size_t> slots;
+      for (const auto e : experts) slots.push_back(e == kOwn ? kOwnSlot : experts_[e].slot());
       const double unit = std::ldexp(1.0, columns[c].exponent);
-      channels_.push_back({line, unit, experts, turns_of(columns[c]), nullptr});
+      channels_.push_back({line, unit, 1 / unit, 1 / static_cast<double>(experts.size()), experts,
+                           slots, turns_of(columns[c]), nullptr});
     }
     for (const Coupling& coupling : clip.couplings) {
       if (coupling.kind == 0) continue;
       laws_.push_back(std::make_unique<Lawful>(coupling, columns));
       for (const auto target : coupling.targets) channels_[target].law = laws_.back().get();
     }
-    gather_blends(clip.level >= 8 ? Blends::kMostMemories : 1);
+    if (clip.level >= kLastStageFrom) last_.emplace(count_, slots());
+    if (clip.level >= kNetworkFrom) network_.emplace(count_);
+    gather_blends(clip.level >= kMemoriesFrom ? Blends::kMostMemories : 1);
     for (auto& expert : experts_) chains_.push_back(&expert.chain());
     // Those of the experts, of the own chains, of a law, and the blend.
     predictions_.resize(experts_.size() + 1 + Lawful::kPredictions + 1);
     begin_with(clip.start);
   }
+
+  // What the network sees is added to `seen`, and behind each its target.
+  void show_network(std::vector<float>* seen) { seen_ = seen; }
 
   Start learned() {
     Start start;
@@ -116,15 +133,18 @@ class Model {
     frames_.next();
     if (first_ || side.chance(kNoCut, cut)) return code_first_frame(side, row);
     for (auto& expert : experts_) expert.begin();
-    own_.begin(frames_);
+    if (has_own_) own_.begin(frames_);
     spreads_.begin();
+    if (last_) last_->begin();
+    if (network_) network_->begin();
     if (kinematics_) kinematics_->begin(frames_);
     for (std::size_t c = 0; c < count_; ++c) row[c] = code_number(side, c, row[c]);
     weights_.clear();
     for (auto& expert : experts_) weights_.push_back(expert.weigh(frames_));
     Chain::learn_all(chains_, weights_);
-    own_.learn(frames_);
+    if (has_own_) own_.learn(frames_);
     for (auto& blends : blends_) blends.learn();
+    if (last_) last_->learn();
     spreads_.learn();
   }
 
@@ -178,6 +198,16 @@ class Model {
     }
   }
 
+  // Which predictors there are, without those that have no slot.
+  std::vector<std::size_t> slots() const {
+    std::set<std::size_t> found;
+    for (const Channel& channel : channels_) {
+      found.insert(channel.slots.begin(), channel.slots.end());
+    }
+    found.erase(kNoSlot);
+    return {found.begin(), found.end()};
+  }
+
   static std::size_t predictors(const Channel& channel) {
     return channel.experts.size() + (channel.law != nullptr ? Lawful::kPredictions : 0);
   }
@@ -216,36 +246,78 @@ class Model {
       predictions_[count + Lawful::kPredictions] = blended;
       blended = predictions_[count + channel.choice.nearest()];
     }
-    const double predicted = sane(frames_.level(c, 1) + blended);
-    const double expected = predicted / channel.unit;
+    const double expected = sane(frames_.level(c, 1) + blended) * channel.per_unit;
     double turned = channel.turns ? channel.turns->left(expected) : 0;
-    const double step = channel.line.step(expected - turned) * channel.unit;
-    const double loose = channel.law != nullptr ? channel.law->looseness() : 1;
-    const double scale = loose * spreads_.scale(c, doubt(channel, blended, step) / loose,
-                                                (kFloor * step + kTiny) / loose);
-    const double width = (scale + kRounding * step) / channel.unit;
-    if (channel.turns) turned = channel.turns->code(side, expected, width, number);
-    const double coded = residual_.code(side, c, channel.line, expected - turned, width, number);
-    const double before = frames_.level(c, 1) / channel.unit;
+    Beside beside = beside_blend(c, blended, channel.line.step(expected - turned) * channel.unit);
+    const double span = beside.scale + beside.step;
+    if (beside.last) add_last_stage(c, beside, span);
+    const double moved = blended + beside.moved;
+    const double predicted =
+        sane(frames_.level(c, 1) + (moved + beside.moved_again)) * channel.per_unit;
+    const double width = (beside.scale + kRounding * beside.step) * channel.per_unit;
+    if (channel.turns) turned = channel.turns->code(side, predicted, width, number);
+    const double coded = residual_.code(side, c, channel.line, predicted - turned, width, number);
+    const double before = frames_.level(c, 1) * channel.per_unit;
     const double now = level(c, channel.turns ? coded + Turns::since(before, coded) : coded);
     const double error = now - frames_.level(c, 1);
-    channel.blends->see(channel.blend, error, scale + step);
+    channel.blends->see(channel.blend, error, span);
     if (unsure) {
-      channel.choice.learn(predictions_.data() + count, error, kFarthest * (scale + step));
+      channel.choice.learn(predictions_.data() + count, error, kFarthest * span);
     }
-    spreads_.see(c, (error - blended) / loose);
+    if (beside.last) last_->see(c, error - blended);
+    if (network_) {
+      if (beside.last && seen_ != nullptr) network_->show((error - moved) / span, *seen_);
+      network_->see(c, (error - blended) / span, span);
+    }
+    spreads_.see(c, (error - moved) / beside.loose);
     frames_.set(c, now);
     return coded;
   }
 
-  // How far the predictors are from what was made of them; where a law is sure, how far rounding
-  // may have led it astray.
-  double doubt(const Channel& channel, double blended, double step) const {
-    if (channel.law != nullptr && channel.law->sure()) return channel.law->looseness() * step;
+  // What a number is coded with beside the blend of its predictions, in levels.
+  struct Beside {
+    bool last;     // whether the last stage moves the blend
+    double step;   // of the line
+    double loose;  // how many times further off a law may be
+    double scale;
+    double moved = 0;        // by the last stage
+    double moved_again = 0;  // by the network
+    LastStage::Apart apart{};
+  };
+
+  Beside beside_blend(std::size_t c, double blended, double step) {
+    const Channel& channel = channels_[c];
+    const bool sure = channel.law != nullptr && channel.law->sure();
+    const double loose = channel.law != nullptr ? channel.law->looseness() : 1;
+    Beside beside{last_ && channel.law == nullptr, step, loose, 0};
     double sum = 0;
-    const std::size_t count = channel.experts.size();
-    for (std::size_t i = 0; i < count; ++i) sum += std::fabs(predictions_[i] - blended);
-    return sum / static_cast<double>(count);
+    for (std::size_t i = 0; i < channel.experts.size(); ++i) {
+      const double far = predictions_[i] - blended;
+      beside.apart[channel.slots[i]] = far;
+      sum += std::fabs(far);
+    }
+    if (beside.last) beside.moved = last_->move(c, beside.apart);
+    // How far the predictors are from what was made of them; where a law is sure, how far rounding
+    // may have led it astray.
+    const double doubt = sure ? loose * step : sum * channel.share;
+    beside.scale = loose * spreads_.scale(c, doubt / loose, (kFloor * step + kTiny) / loose);
+    return beside;
+  }
+
+  void add_last_stage(std::size_t c, Beside& beside, double span) {
+    beside.moved += last_->move_by_past(c, span);
+    if (!network_) return;
+    Network::Known known;
+    for (std::size_t i = 0; i < LastStage::kPast; ++i) known.residuals[i] = last_->residual(c, i);
+    known.apart = beside.apart;
+    known.moved = beside.moved;
+    known.last_move = frames_.difference(c, 1, 1);
+    known.scale = beside.scale;
+    known.step = beside.step;
+    known.spread = spreads_.features(c);
+    const Network::Told told = network_->tell(c, known);
+    beside.moved_again = told.move * span;
+    beside.scale *= told.scale;
   }
 
   static constexpr double kTiny = 1e-9;
@@ -264,16 +336,20 @@ class Model {
   std::size_t count_;  // columns that are predicted
   std::vector<Expert> experts_;
   OwnChains own_;
+  bool has_own_;
   std::vector<Channel> channels_;
   std::vector<std::unique_ptr<Lawful>> laws_;
   std::optional<Kinematics> kinematics_;
   std::vector<Blends> blends_;
   Frames frames_;
+  std::optional<LastStage> last_;
+  std::optional<Network> network_;
   Spreads spreads_;
   Residual residual_;
   std::vector<double> predictions_;
   std::vector<Chain*> chains_;
   std::vector<double> weights_;
+  std::vector<float>* seen_ = nullptr;
   bool first_ = true;
 };
 

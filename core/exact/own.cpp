@@ -6,7 +6,7 @@ namespace mocapress::exact {
 namespace {
 
 constexpr std::size_t kPast = 3;  // differences
-constexpr double kFading = 0.99;
+constexpr double kFading = 0.97;
 
 MOCAPRESS_VECTOR_CLONES
 void weigh(const Block* now, const Block* before, const Block* predictions, Block* usual,

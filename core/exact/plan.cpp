@@ -11,7 +11,13 @@ namespace {
 // More channels than these are cut into blocks, so that time grows with their number, not its
 // square.
 constexpr std::size_t kMostTogether = 72;
-constexpr std::size_t kLimb = 6;
+
+// How many channels are a block, and how many of the first ones belong to each.
+struct Limbs {
+  std::size_t block, root;
+};
+constexpr Limbs kFine = {6, 6};
+constexpr Limbs kCoarse = {8, 0};
 
 Variable past(std::size_t channel, int age) {
   return {Variable::Kind::past,
@@ -30,7 +36,7 @@ void add_blocks(std::vector<ExpertPlan>& plans, std::size_t channels, double fad
   for (std::size_t block = 0; block < blocks; ++block) {
     const std::size_t from = channels * block / blocks;
     const std::size_t to = channels * (block + 1) / blocks;
-    ExpertPlan plan{1, fading, {}};
+    ExpertPlan plan{kWholeSlot, 1, fading, {}};
     for (std::size_t channel = from; channel < to; ++channel) {
       plan.variables.push_back(past(channel, 1));
     }
@@ -41,14 +47,15 @@ void add_blocks(std::vector<ExpertPlan>& plans, std::size_t channels, double fad
   }
 }
 
-// Every channel by those before it in its block, in the block before, and in the first one, whose
-// root moves everything: few enough to be learned within a second.
-void add_limbs(std::vector<ExpertPlan>& plans, std::size_t channels, int order, double fading) {
+// Every channel by those before it in its block, in the block before, and among the first ones, the
+// root, which moves everything: few enough to be learned within a second.
+void add_limbs(std::vector<ExpertPlan>& plans, std::size_t channels, const Limbs& limbs, int order,
+               double fading) {
   for (std::size_t from = 0, last = 0; from < channels;) {
-    const std::size_t to = std::min(channels, from + kLimb);
-    ExpertPlan plan{order, fading, {}};
+    const std::size_t to = std::min(channels, from + limbs.block);
+    ExpertPlan plan{order == 1 ? kMoveSlot : kLimbSlot, order, fading, {}};
     for (std::size_t channel = 0; channel < from; ++channel) {
-      if (channel < kLimb || channel >= last) {
+      if (channel < limbs.root || channel >= last) {
         plan.variables.push_back(one(Variable::Kind::known, channel));
       }
     }
@@ -71,7 +78,7 @@ void add_guessed(std::vector<ExpertPlan>& plans, std::span<const Column> columns
   for (std::size_t from = 0, to = 0; from < columns.size(); from = to) {
     while (to < columns.size() && limb(to) == limb(from)) ++to;
     if (limb(from) < 0) continue;
-    ExpertPlan plan{2, fading, {}};
+    ExpertPlan plan{history == 0 ? kLimbSlot : kGuessSlot, 2, fading, {}};
     for (int age = history; age >= 1; --age) {
       for (std::size_t channel = from; channel < to; ++channel) {
         plan.variables.push_back(past(channel, age));
@@ -87,7 +94,7 @@ void add_guessed(std::vector<ExpertPlan>& plans, std::span<const Column> columns
 
 // The targets by a polynomial of degree 3 of the sources.
 ExpertPlan coupled(const Coupling& coupling, double fading) {
-  ExpertPlan plan{1, fading, {}};
+  ExpertPlan plan{kNoSlot, 1, fading, {}};
   for (const auto source : coupling.sources) {
     plan.variables.push_back(one(Variable::Kind::known, source));
   }
@@ -118,13 +125,15 @@ Plans plans(std::span<const Column> columns, std::span<const Coupling> couplings
   std::vector<ExpertPlan> made;
   if (knows_skeleton(columns, level)) {
     add_guessed(made, columns, 0, 0.9);
-    add_guessed(made, columns, 2, 0.98);
+    if (level >= 9) add_guessed(made, columns, 2, 0.98);
   } else {
-    add_limbs(made, channels, 2, 0.94);
+    add_limbs(made, channels, level == 3 || level == 5 ? kCoarse : kFine, 2, 0.92);
   }
-  const std::size_t before_own = made.size();
-  if (level >= 7) add_limbs(made, channels, 1, 0.94);
-  if (level >= 8) add_blocks(made, channels, 0.998);
+  const std::size_t before_own = level >= 5 ? made.size() : kNoOwn;
+  if (level >= 9) {
+    add_limbs(made, channels, kFine, 1, 0.94);
+    add_blocks(made, channels, 0.998);
+  }
   for (const auto& coupling : couplings) {
     if (coupling.kind == 0) made.push_back(coupled(coupling, 0.9998));
   }

@@ -12,9 +12,12 @@ namespace mocapress::exact {
 // Whether there are guesses from the skeleton's geometry.
 bool knows_skeleton(std::span<const Column> columns, int level);
 
+inline constexpr std::size_t kNoOwn = ~std::size_t{0};
+
 struct Plans {
   std::vector<ExpertPlan> experts;
-  std::size_t before_own;  // behind so many of them each channel's own past has its say
+  // Behind so many of them each channel's own past has its say, or nowhere.
+  std::size_t before_own;
 };
 
 // Of the columns that are predicted.

@@ -96,6 +96,7 @@ Spreads::Spreads(std::size_t channels)
       middles_(channels, 0),
       sums_(channels, 0),
       scales_(channels, 1),
+      inverses_(channels, 1),
       errors_(channels, 0),
       squares_(channels, 0),
       last_(channels, 0) {
@@ -137,13 +138,15 @@ double Spreads::scale(std::size_t c, double disagreement, double floor) {
   const double sum =
       ((sums_[c] + weights_[kActivity][c] * activity_) + weights_[kDisagreement][c] * apart) +
       weights_[kLast][c] * features_[kLast][c];
-  return scales_[c] = std::max(natural_exp(bounded(sum, 600)), 0.2 * floor);
+  const double scale = std::max(natural_exp(bounded(sum, 600)), 0.2 * floor);
+  inverses_[c] = 1 / scale;
+  return scales_[c] = scale;
 }
 
 void Spreads::see(std::size_t c, double error) {
   errors_[c] = error;
   if (seen_ == 0) return;
-  const double relative = error / scales_[c];
+  const double relative = error * inverses_[c];
   const double square = relative * relative;
   squares_[c] = square;
   last_[c] = std::clamp(natural_log(std::fabs(relative) + 0.1) + 0.5, -2.0, 3.0);

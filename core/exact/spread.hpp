@@ -26,6 +26,15 @@ class Spreads {
   void see(std::size_t channel, double error);
   void learn();
 
+  // What the scale was made of: how fast and slow errors are against the middle, the activity, the
+  // disagreement, and how far off the last value was.
+  using Features = std::array<double, 5>;
+  Features features(std::size_t channel) const {
+    Features features;
+    for (std::size_t i = 0; i < features.size(); ++i) features[i] = features_[i + 1][channel];
+    return features;
+  }
+
   template <class Visit>
   void visit(std::size_t channel, Visit&& each) {
     for (auto& weights : weights_) each(weights[channel]);
@@ -44,6 +53,7 @@ class Spreads {
   Lanes middles_;               // logarithms
   Lanes sums_;                  // of the features that look back
   Lanes scales_;
+  Lanes inverses_;
   Lanes errors_;
   Lanes squares_;        // of the errors, in scales
   Lanes last_;           // how far off the value was, against the scale

@@ -52,6 +52,24 @@ struct FirstChances {
   std::array<std::uint16_t, 64> noise_lengths;  // that a bit of its length is 0
 };
 
+inline constexpr std::size_t kHidden = 64;
+inline constexpr std::size_t kNetworkInputs = 48;  // the last two are 0
+inline constexpr std::size_t kOutputs = 2;
+
+// Whole numbers, 1/1024; of each row of weights the sum is one unit.
+struct NetworkTable {
+  template <std::size_t kCount>
+  using Row = std::array<std::int16_t, kCount>;
+
+  std::array<Row<kNetworkInputs>, kHidden> first;
+  Row<kHidden> first_biases;
+  std::array<Row<kHidden>, kHidden> second;
+  Row<kHidden> second_biases;
+  std::array<Row<kHidden>, kOutputs> last;
+  Row<kNetworkInputs> direct;
+  Row<kOutputs> biases;
+};
+
 // The files are the numbers alone, without inner braces.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmissing-braces"
@@ -70,6 +88,10 @@ inline constexpr SkeletonTables kCmu = {
 
 inline constexpr FirstChances kFirst = {
 #include "data/start_1.txt"
+};
+
+inline constexpr NetworkTable kNetwork = {
+#include "data/network_1.txt"
 };
 
 #pragma GCC diagnostic pop

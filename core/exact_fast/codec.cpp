@@ -156,9 +156,9 @@ class FastModel {
 template <class Action>
 void with_model(const Clip& clip, Action action) {
   if (clip.level == 1) {
-    action(FastModel<1, 4>(clip.columns, 0.95));
+    action(FastModel<2, 4>(clip.columns, 0.91));
   } else {
-    action(FastModel<2, 8>(clip.columns, 0.96));
+    action(FastModel<2, 8>(clip.columns, 0.9));
   }
 }
 

@@ -13,6 +13,7 @@
 #include "exact/joint.hpp"
 #include "exact/kinematics.hpp"
 #include "exact/law.hpp"
+#include "exact/network.hpp"
 #include "numbers/coarsest_line.hpp"
 #include "python/bindings.hpp"
 
@@ -121,6 +122,17 @@ void decode(const nb::bytes& payload, const Output<double, 2>& values, const Exa
   exact::decode(bytes, values.data(), values.shape(0), arguments.clip, whole);
 }
 
+// What the network sees of each number, and what would have been right, (n, inputs + 1).
+Given<float, 2> network_inputs(const Input<double, 2>& values, const ExactPlan& plan,
+                               const Couplings& couplings, int level) {
+  const Told arguments(plan, values.shape(1), couplings, level, {});
+  std::vector<float> seen;
+  exact::encode(values.data(), values.shape(0), arguments.clip, nullptr, &seen);
+  constexpr std::size_t columns = exact::Network::kInputs + 1;
+  const std::size_t rows = seen.size() / columns;
+  return give(std::move(seen), std::array{rows, columns});
+}
+
 std::vector<std::pair<int, int>> lines(const Input<double, 2>& values) {
   std::vector<std::pair<int, int>> found;
   nb::gil_scoped_release unlocked;
@@ -201,6 +213,10 @@ void bind_exact(nb::module_& module) {
              couplings, level, start, nb::arg("whole"),
              "Fill ``values`` from a chunk; ValueError where it is none.\n\n"
              "Unless ``whole``, these are only the chunk's first frames.");
+  module.def("exact_network_inputs", &network_inputs, values, plan, couplings, level,
+             "Give what the network sees of each number, and what would have been right.\n\n"
+             "A row for each number that it takes part in, (n, inputs + 1), in units of how far\n"
+             "off the number was to be expected.");
   module.def("exact_lines", &lines, values,
              "Give the coarsest line that holds each column, and its digits.");
   module.def(

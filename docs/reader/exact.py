@@ -22,7 +22,7 @@ def decode(
     told = Header(record, len(formats))
     beside = Told(record, len(formats))
     record.end()
-    level = int(parameters.get("level", "6"))
+    level = told.level or int(parameters.get("level", "6"))
     lists = read_model(model) if told.learned else {}
     rows: list[list[float]] = []
     for frames, packed in chunks:

@@ -59,6 +59,7 @@ class Expert:
     def __init__(
         self,
         levels: Levels,
+        slot: int | None,
         order: int,
         fading: float,
         targets: Iterable[int],
@@ -67,7 +68,7 @@ class Expert:
         guess: Callable[[int], float] | None = None,
     ) -> None:
         """Take channels and ages of the variables before the targets, and what stands behind."""
-        self.levels, self.order = levels, order
+        self.levels, self.slot, self.order = levels, slot, order
         difference = partial(levels.difference, order)
         self.variables: list[Variable] = [partial(difference, c, age) for c, age in before]
         self.variables += products
@@ -113,27 +114,34 @@ def make_experts(
 ) -> list[Expert]:
     """Make the experts of channels, of which ``columns`` are the columns of the clip."""
     n, make = len(columns), partial(Expert, levels)
-    sixes = [range(at, min(at + 6, n)) for at in range(0, n, 6)]
-    free = [[(c, 0) for c in range(six[0]) if c < 6 or c >= six[0] - 6] for six in sixes]
-    count = -(-n // 72)
-    wide = [range(n * b // count, n * (b + 1) // count) for b in range(count)]
-    if skeleton:
-        limbs = [list(run) for _, run in groupby(range(n), lambda c: LIMBS[columns[c]])]
-        older = [[(c, age) for age in (2, 1) for c in limb] for limb in limbs]
-        experts = [make(2, 0.9, limb, guess=skeleton.guess) for limb in limbs]
-        experts += [
-            make(2, 0.98, *told, guess=skeleton.guess) for told in zip(limbs, older, strict=True)
+
+    def limbs(slot: int, order: int, fading: float, size: int, root: int) -> list[Expert]:
+        """Make those of blocks, with the first channels."""
+        blocks = [range(at, min(at + size, n)) for at in range(0, n, size)]
+        known = [[c for c in range(b[0]) if c < root or c >= b[0] - size] for b in blocks]
+        return [
+            make(slot, order, fading, block, [(c, 0) for c in before])
+            for block, before in zip(blocks, known, strict=True)
         ]
+
+    if skeleton:
+        runs = [list(run) for _, run in groupby(range(n), lambda c: LIMBS[columns[c]])]
+        experts = [make(0, 2, 0.9, run, guess=skeleton.guess) for run in runs]
+        for run in runs if level == 9 else []:
+            older = [(c, age) for age in (2, 1) for c in run]
+            experts.append(make(1, 2, 0.98, run, older, guess=skeleton.guess))
     else:
-        experts = [make(2, 0.94, *told) for told in zip(sixes, free, strict=True)]
-    experts += [make(1, 0.99, [c], [(c, 3), (c, 2), (c, 1)]) for c in range(n)]
-    if level >= 7:
-        experts += [make(1, 0.94, *told) for told in zip(sixes, free, strict=True)]
-    if level >= 8:
-        experts += [make(1, 0.998, block, [(c, 1) for c in block]) for block in wide]
+        experts = limbs(0, 2, 0.92, *((8, 0) if level in (3, 5) else (6, 6)))
+    if level >= 5:
+        experts += [make(2, 1, 0.97, [c], [(c, 3), (c, 2), (c, 1)]) for c in range(n)]
+    if level >= 9:
+        experts += limbs(3, 1, 0.94, 6, 6)
+        count = -(-n // 72)
+        wide = [range(n * b // count, n * (b + 1) // count) for b in range(count)]
+        experts += [make(4, 1, 0.998, block, [(c, 1) for c in block]) for block in wide]
     for sources, targets in polynomials:
         known = [(c, 0) for c in sources]
-        experts.append(make(1, 0.9998, targets, known, products(levels, sources)))
+        experts.append(make(None, 1, 0.9998, targets, known, products(levels, sources)))
     return experts
 
 
@@ -157,8 +165,8 @@ class Blend:
     """Blend: one move out of the predictions."""
 
     def __init__(self, count: int, level: int) -> None:
-        fadings = (0.94, 0.985, 0.998) if level >= 8 else (0.94,)
-        self.chains = [Chain(count, fading, 1.0) for fading in fadings]
+        fadings = (0.94, 0.985, 0.998) if level == 9 else (0.94,)
+        self.chains = [Chain(count, fading, 1.0) for fading in fadings if count > 1]
         self.v = [1.0 for _ in fadings]
 
     def mix(self, moves: list[float], mean: float) -> float:
@@ -167,6 +175,8 @@ class Blend:
             for p in moves[1:]:
                 chain.see(p - mean)
         self.mean, self.h = mean, [chain.prediction() for chain in self.chains]
+        if len(self.h) < 2:
+            return mean + total(self.h)
         squares = [v * v + 1e-12 for v in self.v]
         w = [1 / (s * s) for s in squares]
         return mean + total(a * b for a, b in zip(w, self.h, strict=True)) / total(w)

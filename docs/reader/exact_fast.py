@@ -22,7 +22,7 @@ from lines import (
 from streams import Bit, Intervals
 
 # Own bends and channels before that predict, and the fading.
-INPUTS = {1: (1, 4, 0.95), 2: (2, 8, 0.96)}
+INPUTS = {1: (2, 4, 0.91), 2: (2, 8, 0.9)}
 # Where each bucket but the last begins, and log2 of how wide it is.
 BUCKETS = [(a, 0) for a in range(16)]
 BUCKETS += [(more << k, k) for k in range(3, 10) for more in (2, 3)]

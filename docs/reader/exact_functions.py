@@ -36,18 +36,12 @@ def total(terms: Iterable[float]) -> float:
 
 def ln(x: float) -> float:
     """Elementary functions: the logarithm."""
-    exponent, mantissa = divmod(bits64(x), 2**52)
-    v = of_bits64(1023 << 52 | mantissa) - 1
-    s = v * (1.441949 + v * (-0.7091 + v * (0.415023 + v * (-0.192401 + v * 0.044529))))
-    return (exponent - 1023 + s) * LN2
+    return ((bits64(x) >> 12) - (1023 << 40)) * (LN2 / 2**40)
 
 
 def exp(x: float) -> float:
     """Elementary functions: the power of e."""
-    y = x * (1 / LN2) + 1100
-    v = y - int(y)
-    s = 1 + v * (0.692996 + v * (0.241566 + v * (0.051752 + v * 0.013686)))
-    return math.ldexp(s, int(y) - 1100)
+    return of_bits64(int(x * (2**52 / LN2) + 1023.0 * 2**52))
 
 
 def sine_cosine(alpha: float) -> tuple[float, float]:

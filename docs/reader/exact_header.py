@@ -62,7 +62,9 @@ class Header:
 
     def __init__(self, record: Record, count: int) -> None:
         flags = record.integer()
-        self.skeleton, self.learned = flags >> 2, flags & 1
+        self.skeleton, self.learned = flags >> 3, flags & 1
+        self.level = record.integer() if flags & 4 else 0
+        """Where it is not that of the parameters."""
         if self.skeleton > 1:
             raise CorruptError("a skeleton that this version does not have")
         roles = palette(record, count)

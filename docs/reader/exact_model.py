@@ -7,6 +7,7 @@ from exact_coding import Coding, Noise
 from exact_experts import Blend, make_experts
 from exact_functions import cut, exp, ln, rounded_away, total
 from exact_header import Column, Coupling
+from exact_last import LastStage, Network, Shared
 from exact_laws import Law, make_law
 from exact_skeleton import Levels, Skeleton
 from streams import Bit, Coded
@@ -62,6 +63,7 @@ class Spread:
 
     def __init__(self) -> None:
         self.weights = [-0.1, 0.4, 0.2, 0.5, 0.15, 0.03]
+        self.features = [0.0] * 6
         self.means, self.last, self.count = [0.0] * 3, 0.0, 0
 
     def next(self, doubt: float, floor: float, activity: float) -> float:
@@ -79,7 +81,7 @@ class Spread:
 
     def learn(self, error: float, activity: float) -> float:
         """Learn from an error; give the activity of all channels behind it."""
-        rho, z = error / self.value, abs(error)
+        rho, z = error * (1 / self.value), abs(error)
         if self.count > 0:
             g = cut(5 * (rho * rho) / (4 + rho * rho) - 1, -2.0, 2.0)
             for i, feature in enumerate(self.features):
@@ -104,6 +106,7 @@ class Channel:
         self.joint = told.coupling.joint if told else None
         self.law = None if self.joint else told
         self.blend, self.spread = Blend(count + (3 if told else 0), level), Spread()
+        self.stage = LastStage() if level >= 5 and not told else None
         self.low = {0: 0.0, 1: -180.0, 2: 0.0}[column.turns]
         self.edges = [Bit() for _ in range(32)]
 
@@ -171,6 +174,8 @@ class Part:
             channel = Channel(column, told.get(c), len(self.experts_of[c]), level, chances)
             channel.begin(lists.get(column.place, []))
             self.channels.append(channel)
+        self.shared, self.products = Shared(), dict[int, list[float]]()
+        self.network = Network(len(predicted)) if level >= 7 else None
         noise = [column for column in columns if column.noise]
         self.noises = [Noise(column.line, lists.get(column.place, [])) for column in noise]
 
@@ -186,7 +191,11 @@ class Part:
             past[1:] = past[:4]
         if self.skeleton:
             self.skeleton.next_frame()
+        if self.network:
+            self.network.next_frame()
+        self.products.clear()
         numbers = [self._number(c) for c in range(len(self.channels))]
+        self.shared.learn(self.products, len(numbers))
         for expert in self.experts:
             expert.learn()
         return numbers + noise
@@ -197,7 +206,8 @@ class Part:
         line, last = channel.column.line, past[1]
         moves = [expert.predict(c) - last for expert in self.experts_of[c]]
         told = channel.told.predict() if channel.told else []
-        mean = told[0] if channel.joint else total(moves) / len(moves)
+        share = 1 / len(moves)
+        mean = told[0] if channel.joint else total(moves) * share
         p = channel.blend.mix(moves + told, mean)
         if channel.law:
             p = channel.law.choose([*told, p])
@@ -205,19 +215,33 @@ class Part:
         w = channel.turns(q)
         step = line.step(q - w) * unit
         loose = channel.joint.loose if channel.joint else 1.0
-        doubt = loose * step if channel.joint else total(abs(x - p) for x in moves) / len(moves)
+        doubt = loose * step if channel.joint else total(abs(x - p) for x in moves) * share
         floor = (0.1 * step + 1e-9) / loose
         scale = loose * channel.spread.next(doubt / loose, floor, self.activity)
+        u, m, n = scale + step, p, 0.0
+        if stage := channel.stage:
+            experts = zip(self.experts_of[c], moves, strict=True)
+            far = {one.slot: x - p for one, x in experts if one.slot is not None}
+            m = p + (stage.apart(far) + stage.past(u) * u)
+            if self.network:
+                told_of = self.levels.difference(1, c, 1), scale, step, channel.spread.features[1:]
+                n, scale = self.network.tell(c, stage, far, *told_of)
+            q = cut(last + (m + n), -1e6, 1e6) / unit
+            w = channel.turns(q)
         width = (scale + 0.15 * step) / unit
         w += channel.edge(self.coding, q - w - channel.low, width)
         x = self.coding.beside(line, channel.chances, q - w, width)
         since = 360 * whole((last / unit - x) / 360 + 0.5) if channel.column.turns else 0.0
         past[0] = level_of(x + since, unit)
         e = past[0] - last
-        channel.blend.learn(e, scale + step)
+        channel.blend.learn(e, u)
         if channel.law:
-            channel.law.learn(e, scale + step)
-        self.activity = channel.spread.learn((e - p) / loose, self.activity)
+            channel.law.learn(e, u)
+        if stage:
+            self.products[c] = stage.learn(e - p, self.shared.weights)
+        if self.network:
+            self.network.see(c, e - p, u)
+        self.activity = channel.spread.learn((e - m) / loose, self.activity)
         return x
 
 

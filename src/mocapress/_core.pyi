@@ -230,6 +230,14 @@ def exact_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(
     Unless ``whole``, these are only the chunk's first frames.
     """
 
+def exact_network_inputs(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 6), order='C', device='cpu', writable=False)], couplings: Sequence[tuple[int, Sequence[int], Sequence[int], Sequence[float]]], level: int) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None))]:
+    """
+    Give what the network sees of each number, and what would have been right.
+
+    A row for each number that it takes part in, (n, inputs + 1), in units of how far
+    off the number was to be expected.
+    """
+
 def exact_lines(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> list[tuple[int, int]]:
     """Give the coarsest line that holds each column, and its digits."""
 

@@ -140,6 +140,10 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
 TRAINED = {
     "v1_trained.bvh": (WALK_BVH, "exact:chunk=80"),
     "v1_trained_laws.amc": (clips.leaps(), "exact:level=9,chunk=22"),
+    # With a model no lower level is taken.
+    "v1_trained_disorder.amc": (clips.disorder(), "exact:chunk=10"),
+    "v1_trained_numbers.bvh": (clips.numbers(), "exact:chunk=16"),
+    "v1_trained_skeleton.amc": (clips.skeleton(), "exact:level=9,chunk=12"),
 }
 # Beside NAME the document NAME.diffma.json; what comes back of it is NAME.
 DOCUMENTS = {

@@ -29,6 +29,12 @@ from mocapress.motion import Column, Skeleton, Stream
 _MOST_FRAMES = 1 << 20
 _FAST_LEVELS = 2
 """Up to this level couplings are not looked for: core/exact_fast/codec.hpp has no use for them."""
+_TRIED = 256
+"""Frames on which lower levels are tried, too."""
+_OTHERS = (5, 2, 1)
+"""Levels that are tried besides the one below."""
+_SURE = 0.997
+"""How much smaller a lower level must be where there are more frames than are tried."""
 _TELLING = 2
 """Laws of a skeleton that tell that columns without names are its channels."""
 _TOGETHER = 1024
@@ -87,14 +93,18 @@ class Exact(Codec):
         if stream.frames == 0:
             return Encoded(b"", ())
         told, numbers, masks = Told.find(stream.values)
-        roles = _roles(numbers, stream.columns, self.level)
-        coder = _Coder(roles, self.level, start_of(model))
+        roles, level = _roles(numbers, stream.columns, self.level), self.level
+        if model is None:
+            roles, level = _smallest(roles, level, numbers)
+        coder = _Coder(roles, level, start_of(model))
         chunks = []
         for first in range(0, stream.frames, self.chunk):
             rows = numbers[first : first + self.chunk]
             own = [mask[first : first + self.chunk] for mask in masks]
             chunks.append(Chunk(first, len(rows), told.pack(coder.encode(rows)[0], own)))
-        return Encoded(pack_header(roles, told, has_model=model is not None), tuple(chunks))
+        other = level if level != self.level else None
+        header = pack_header(roles, told, has_model=model is not None, level=other)
+        return Encoded(header, tuple(chunks))
 
     def decode(
         self,
@@ -118,10 +128,10 @@ class Exact(Codec):
         """
         if not chunks:
             return np.empty((0, len(columns)))
-        roles, told, has_model = unpack_header(header, len(columns))
+        roles, told, has_model, level = unpack_header(header, len(columns))
         if has_model and model is None:
             raise CorruptError("exact header: the clip was coded with a model")
-        coder = _Coder(roles, self.level, start_of(model))
+        coder = _Coder(roles, level or self.level, start_of(model))
         for chunk in chunks:
             self._check_size(chunk, len(coder.columns))
         frames = sum(chunk.frames for chunk in chunks)
@@ -167,6 +177,27 @@ def _roles(values: NDArray[np.float64], columns: Sequence[Column], level: int) -
     if joints is columns or len(set(found.couplings) & set(OWN_COUPLINGS)) >= _TELLING:
         return found
     return replace(found, skeleton=NONE)
+
+
+def _smallest(roles: Roles, level: int, values: NDArray[np.float64]) -> tuple[Roles, int]:
+    """Give how a clip is coded in the fewest bytes, as far as its first frames tell.
+
+    More predictors are not better ones for every clip, least of all for short ones. Tried are the
+    level, the one below it, and those that differ most.
+    """
+    rows = values[:_TRIED]
+    best, smallest = (roles, level), float("inf")
+    for own in sorted({level, level - 1, *_OTHERS}, reverse=True):
+        if not 1 <= own <= level:
+            continue
+        plan = replace(roles, couplings=()) if own <= _FAST_LEVELS else roles
+        header = pack_header(plan, Told(), has_model=False, level=None if own == level else own)
+        size: float = len(header) + len(_Coder(plan, own, Start()).encode(rows)[0])
+        if own < level and len(rows) < len(values):
+            size /= _SURE
+        if size < smallest:
+            best, smallest = (plan, own), size
+    return best
 
 
 class _Coder:

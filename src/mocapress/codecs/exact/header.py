@@ -21,16 +21,23 @@ from mocapress.codecs.palette import (
 )
 from mocapress.records import Reader, Writer
 
-_MODEL, _OWN_COUPLINGS, _SKELETON = 1, 2, 4
+_MODEL, _OWN_COUPLINGS, _LEVEL, _SKELETON = 1, 2, 4, 8
+_MOST_LEVEL = 9
 _LINES, _LINE_DIGITS = 7, 32
 _TURNS = 3
 
 
-def pack_header(roles: Roles, told: Told, *, has_model: bool) -> bytes:
-    """Make the header of a clip with these roles, coded with a model or without."""
+def pack_header(roles: Roles, told: Told, *, has_model: bool, level: int | None = None) -> bytes:
+    """Make the header of a clip with these roles, coded with a model or without.
+
+    ``level`` where it is not that of the codec's parameters.
+    """
     own = roles.skeleton != NONE and set(roles.couplings) <= set(OWN_COUPLINGS)
     writer = Writer()
-    writer.integer(_MODEL * has_model + _OWN_COUPLINGS * own + _SKELETON * roles.skeleton)
+    flags = _MODEL * has_model + _OWN_COUPLINGS * own + _SKELETON * roles.skeleton
+    writer.integer(flags + _LEVEL * (level is not None))
+    if level is not None:
+        writer.integer(level)
     codes = zip(roles.roles, roles.turns, strict=True)
     write_palette(writer, [role + len(Role) * turns for role, turns in codes])
     lines = [roles.lines[c] for c in _moving(roles.roles)]
@@ -48,8 +55,10 @@ def pack_header(roles: Roles, told: Told, *, has_model: bool) -> bytes:
     return bytes(writer.data)
 
 
-def unpack_header(header: bytes, columns: int) -> tuple[Roles, Told, bool]:
-    """Give the roles of as many columns, their gaps and tables, and whether a model was used.
+def unpack_header(header: bytes, columns: int) -> tuple[Roles, Told, bool, int | None]:
+    """Give roles, gaps and tables of as many columns, whether a model was used, and the level.
+
+    The level is None where it is that of the codec's parameters.
 
     Raises
     ------
@@ -58,7 +67,10 @@ def unpack_header(header: bytes, columns: int) -> tuple[Roles, Told, bool]:
 
     """
     reader = Reader(header, "exact header")
-    flags = reader.integer(_MODEL + _OWN_COUPLINGS + _SKELETON * CMU)
+    flags = reader.integer(_MODEL + _OWN_COUPLINGS + _LEVEL + _SKELETON * CMU)
+    level = reader.integer(_MOST_LEVEL) if flags & _LEVEL else None
+    if level == 0:
+        raise reader.fail("a level that there is not")
     skeleton, own = flags // _SKELETON, bool(flags & _OWN_COUPLINGS)
     if CHANNELS.get(skeleton, columns) != columns or (own and skeleton == NONE):
         raise reader.fail("the channels of a skeleton that has others")
@@ -90,7 +102,7 @@ def unpack_header(header: bytes, columns: int) -> tuple[Roles, Told, bool]:
         skeleton,
         constants,
     )
-    return made, told, bool(flags & _MODEL)
+    return made, told, bool(flags & _MODEL), level
 
 
 def _moving(roles: Sequence[Role]) -> list[int]:
