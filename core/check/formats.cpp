@@ -88,9 +88,10 @@ void check_one(const std::string& name, const mocapress::MotionFile& file,
   const mocapress::Rig rig(skeleton, columns, false);
   std::vector<double> places(rig.points() * 3 * file.body.rows());
   std::vector<double> turns(rig.joints() * 4 * file.body.rows());
-  for (std::size_t f = 0; f < file.body.rows(); ++f)
+  for (std::size_t f = 0; f < file.body.rows(); ++f) {
     rig.place(file.body.values.data() + f * file.body.columns, places.data() + f * rig.points() * 3,
               turns.data() + f * rig.joints() * 4);
+  }
   check::report(name + ", places", places);
   check::report(name + ", turns", turns);
 }

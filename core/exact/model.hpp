@@ -93,6 +93,7 @@ class Model {
         if (e < experts_.size() && experts_[e].predicts(c)) experts.push_back(e);
       }
       std::vector<std::size_t> slots;
+      slots.reserve(experts.size());
       for (const auto e : experts) slots.push_back(e == kOwn ? kOwnSlot : experts_[e].slot());
       const double unit = std::ldexp(1.0, columns[c].exponent);
       channels_.push_back({line, unit, 1 / unit, 1 / static_cast<double>(experts.size()), experts,
@@ -264,7 +265,7 @@ class Model {
     if (unsure) {
       channel.choice.learn(predictions_.data() + count, error, kFarthest * span);
     }
-    if (beside.last) last_->see(c, error - blended);
+    if (beside.last) beside.last->see(c, error - blended);
     if (network_) {
       if (beside.last && seen_ != nullptr) network_->show((error - moved) / span, *seen_);
       network_->see(c, (error - blended) / span, span);
@@ -276,9 +277,9 @@ class Model {
 
   // What a number is coded with beside the blend of its predictions, in levels.
   struct Beside {
-    bool last;     // whether the last stage moves the blend
-    double step;   // of the line
-    double loose;  // how many times further off a law may be
+    LastStage* last;  // where the last stage moves the blend
+    double step;      // of the line
+    double loose;     // how many times further off a law may be
     double scale;
     double moved = 0;        // by the last stage
     double moved_again = 0;  // by the network
@@ -289,14 +290,14 @@ class Model {
     const Channel& channel = channels_[c];
     const bool sure = channel.law != nullptr && channel.law->sure();
     const double loose = channel.law != nullptr ? channel.law->looseness() : 1;
-    Beside beside{last_ && channel.law == nullptr, step, loose, 0};
+    Beside beside{last_ && channel.law == nullptr ? &*last_ : nullptr, step, loose, 0};
     double sum = 0;
     for (std::size_t i = 0; i < channel.experts.size(); ++i) {
       const double far = predictions_[i] - blended;
       beside.apart[channel.slots[i]] = far;
       sum += std::fabs(far);
     }
-    if (beside.last) beside.moved = last_->move(c, beside.apart);
+    if (beside.last) beside.moved = beside.last->move(c, beside.apart);
     // How far the predictors are from what was made of them; where a law is sure, how far rounding
     // may have led it astray.
     const double doubt = sure ? loose * step : sum * channel.share;
@@ -305,10 +306,11 @@ class Model {
   }
 
   void add_last_stage(std::size_t c, Beside& beside, double span) {
-    beside.moved += last_->move_by_past(c, span);
+    beside.moved += beside.last->move_by_past(c, span);
     if (!network_) return;
     Network::Known known;
-    for (std::size_t i = 0; i < LastStage::kPast; ++i) known.residuals[i] = last_->residual(c, i);
+    for (std::size_t i = 0; i < LastStage::kPast; ++i)
+      known.residuals[i] = beside.last->residual(c, i);
     known.apart = beside.apart;
     known.moved = beside.moved;
     known.last_move = frames_.difference(c, 1, 1);

@@ -239,9 +239,10 @@ class Reader {
       if (!good) break;
       channels.push_back(kind);
     }
-    if (!good)
+    if (!good) {
       fail(line.number, shown(line.key), "each of tx ty tz rx ry rz l at most once",
            quoted(line.text));
+    }
   }
 
   void order(const Line& line, std::string_view word, std::string& order) {
