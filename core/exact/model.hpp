@@ -93,6 +93,7 @@ class Model {
         if (e < experts_.size() && experts_[e].predicts(c)) experts.push_back(e);
       }
       std::vector<std::size_t> slots;
+      // NOLINTNEXTLINE(performance-inefficient-vector-operation): a handful
       for (const auto e : experts) slots.push_back(e == kOwn ? kOwnSlot : experts_[e].slot());
       const double unit = std::ldexp(1.0, columns[c].exponent);
       channels_.push_back({line, unit, 1 / unit, 1 / static_cast<double>(experts.size()), experts,
@@ -264,6 +265,7 @@ class Model {
     if (unsure) {
       channel.choice.learn(predictions_.data() + count, error, kFarthest * span);
     }
+    // NOLINTNEXTLINE(bugprone-unchecked-optional-access): `last` says that it is there
     if (beside.last) last_->see(c, error - blended);
     if (network_) {
       if (beside.last && seen_ != nullptr) network_->show((error - moved) / span, *seen_);
@@ -305,10 +307,12 @@ class Model {
   }
 
   void add_last_stage(std::size_t c, Beside& beside, double span) {
+    // NOLINTBEGIN(bugprone-unchecked-optional-access): `last` says that it is there
     beside.moved += last_->move_by_past(c, span);
     if (!network_) return;
     Network::Known known;
     for (std::size_t i = 0; i < LastStage::kPast; ++i) known.residuals[i] = last_->residual(c, i);
+    // NOLINTEND(bugprone-unchecked-optional-access)
     known.apart = beside.apart;
     known.moved = beside.moved;
     known.last_move = frames_.difference(c, 1, 1);
