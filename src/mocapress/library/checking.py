@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from mocapress.api.checking import verify_opened
 from mocapress.container import unpack
-from mocapress.container.limits import most_original
+from mocapress.container.limits import most_companions
 from mocapress.errors import CorruptError, MissingModelError, MocapressError
 from mocapress.library.database import Database
 from mocapress.library.opened import OpenedClip
@@ -182,7 +182,7 @@ def _companions(connection: Connection) -> Iterator[Fault]:
             if packed is None or hash_of(packed) != wanted:
                 yield Fault(name, "the companion is damaged")
                 continue
-            data = unpack(packed, "companion", min(size, most_original(len(packed))))
+            data = unpack(packed, "companion", min(size, most_companions(len(packed))))
             if hashlib.sha256(data).digest() != sha256:
                 yield Fault(name, "the companion is damaged")
     except (sqlite3.DatabaseError, CorruptError) as error:

@@ -2,7 +2,7 @@
 
 from mocapress.api.clips import compress_clip
 from mocapress.container import Companion, Head, Mcz, MczWriter, open_mcz, unpack
-from mocapress.container.limits import most_original
+from mocapress.container.limits import most_companions
 from mocapress.library.database import Database
 from mocapress.library.opened import OpenedClip, inherited
 from mocapress.motion import Clip, Stream
@@ -69,7 +69,7 @@ def companions(db: Database, clip: int) -> list[Companion]:
         Companion(
             kind,
             name.rpartition("/")[2],
-            unpack(packed, "companion", min(size, most_original(len(packed)))),
+            unpack(packed, "companion", min(size, most_companions(len(packed)))),
         )
         for kind, name, size, packed in rows
     ]

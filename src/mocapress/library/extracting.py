@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from mocapress.container import unpack
-from mocapress.container.limits import most_original
+from mocapress.container.limits import most_companions
 from mocapress.errors import CorruptError
 from mocapress.library import rows
 from mocapress.library.checking import survivors
@@ -87,7 +87,7 @@ def _companion(library: Library, number: int, name: str, size: int) -> Callable[
             ).fetchone()
         if row is None:
             raise CorruptError("the companion is damaged", file=name)
-        return unpack(row[0], "companion", min(size, most_original(len(row[0]))))
+        return unpack(row[0], "companion", min(size, most_companions(len(row[0]))))
 
     return read
 
