@@ -39,10 +39,10 @@ class Told:
     def find(cls, values: Values) -> tuple[Self, Values, list[Mask]]:
         """Find them; give the numbers to code, (F, C), and the masks, too."""
         masks, tables = Masks(), Tables()
-        numbers = np.empty(values.shape[::-1])
-        masks_of, table_of = [], []
-        for column, own in enumerate(np.ascontiguousarray(values.T)):
-            left, gap = masks.take_gaps(own)
+        numbers = np.array(values.T, order="C")
+        masks_of, table_of = [(0, 0)] * len(numbers), [0] * len(numbers)
+        for column in np.flatnonzero(has_floats(numbers) | np.isnan(numbers).any(axis=1)).tolist():
+            left, gap = masks.take_gaps(numbers[column])
             floats = has_floats(left)
             left, zero = masks.take_zeros(left, -0.0) if floats else (left, 0)
             table = tables.find(left) if floats else 0
@@ -50,8 +50,8 @@ class Told:
                 left, zero = masks.take_zeros(left, 0.0)
                 table = tables.find(left) if zero else 0
             numbers[column] = coded(tables.made[table - 1], left) if table else left
-            masks_of.append((gap, zero))
-            table_of.append(table)
+            masks_of[column] = gap, zero
+            table_of[column] = table
         used = masks_of if masks.masks else []
         told = cls(masks.values, used, tables.made, table_of if tables.made else [])
         return told, np.ascontiguousarray(numbers.T), masks.masks

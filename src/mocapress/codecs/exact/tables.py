@@ -148,11 +148,11 @@ class Tables:
         return number
 
 
-def has_floats(column: Values) -> bool:
-    """Tell whether a column's numbers are float32."""
+def has_floats(columns: Values) -> NDArray[np.bool_]:
+    """Tell of columns, (..., F), whether their numbers are float32, (...)."""
     with np.errstate(over="ignore", invalid="ignore"):
-        again = column.astype(np.float32).astype(np.float64)
-    return bool((again.view(np.uint64) == column.view(np.uint64)).all())
+        again = columns.astype(np.float32).astype(np.float64)
+    return np.asarray((again.view(np.uint64) == columns.view(np.uint64)).all(axis=-1))
 
 
 class _Saving:
