@@ -62,8 +62,8 @@ Network::Network(std::size_t channels) : residuals_(channels + kBefore, 0) {
 }
 
 void Network::begin() {
-  std::ranges::rotate(apart_, apart_.end() - 1);
-  std::ranges::rotate(logs_, logs_.end() - 1);
+  std::rotate(apart_.begin(), apart_.end() - 1, apart_.end());
+  std::rotate(logs_.begin(), logs_.end() - 1, logs_.end());
   frames_ += 1;
 }
 

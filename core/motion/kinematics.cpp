@@ -5,6 +5,12 @@
 
 #include "motion/angle.hpp"
 
+#if defined(__GNUC__) && !defined(__clang__)
+// g++ 12.2 makes fused operations of sums and differences of products that it finds side by side,
+// though -ffp-contract=off forbids them.
+#pragma GCC optimize("no-tree-slp-vectorize")
+#endif
+
 namespace mocapress {
 namespace {
 
