@@ -109,7 +109,7 @@ def test_the_check_sees_fused_multiply_adds(codec: str) -> None:
     assert fused != (GOLDEN / f"kernels_{codec}.txt").read_text()
 
 
-MODULES = sorted(path.stem for path in (ROOT / "core/wasm").glob("*.cpp") if path.stem != "module")
+MODULES = sorted(path.stem for path in (ROOT / "viewer/wasm").glob("*.wasm"))
 
 
 @pytest.mark.parametrize("module", MODULES)
