@@ -92,8 +92,15 @@ def peak_memory(path: Path, contender: str) -> dict[str, float]:
 
 def _shape(data: bytes, path: Path) -> Row:
     source = Source(data, str(path))
-    clip = source.split().clip
-    return {"format": source.kind, "frames": clip.frames, "channels": clip.channels}
+    parts = source.split()
+    if len(parts.clip.streams) > 1 or parts.stored is not None:
+        raise FormatError(
+            "not rows of channels alone; benchmarks/markers.py measures such files",
+            file=str(path),
+            expected="AMC or BVH",
+            found=source.kind,
+        )
+    return {"format": source.kind, "frames": parts.clip.frames, "channels": parts.clip.channels}
 
 
 def _codec_row(
