@@ -86,10 +86,12 @@ def read_runs(reader: Reader, frames: int) -> Mask:
 
     """
     mask = np.zeros(frames, np.bool_)
-    row = 0
-    for run in range(reader.integer(min(frames, reader.left))):
-        row += reader.integer(frames)
+    row, inside = 0, False
+    for _ in range(reader.integer(min(frames, reader.left))):
+        start, row = row, row + reader.integer(frames)
         if row >= frames:
             raise reader.fail("gaps beyond the last row")
-        mask[row:] = run % 2 == 0
+        mask[start:row] = inside
+        inside = not inside
+    mask[row:] = inside
     return mask
