@@ -1,11 +1,19 @@
 """``library export``."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mocapress.cli.library.opening import File, Label, Patterns, chosen, jobs_of, opened
+from mocapress.cli.library.opening import (
+    File,
+    Label,
+    Patterns,
+    chosen,
+    jobs_of,
+    opened,
+    write_files,
+)
 from mocapress.cli.options import Debug, Force, Jobs, Json
 
 if TYPE_CHECKING:
@@ -25,7 +33,6 @@ def export(
     debug: Debug = False,
 ) -> None:
     """Write clips as .mcz files, with their skeletons; nothing is coded again but shared frames."""
-    from mocapress.cli.batch import run
     from mocapress.library import names
 
     with opened(file, debug=debug) as library:
@@ -33,19 +40,9 @@ def export(
         for job in files:
             job.target, job.force = output / f"{names.checked(str(job.source))}.mcz", force
 
-        def work(job: "Job") -> dict[str, Any]:
-            assert job.target is not None
+        def read(job: "Job") -> bytes:
             clip = library[str(job.source)]
             job.modified = clip.modified
-            job.outputs[job.target] = library.read_mcz(clip)
-            return {"output": str(job.target), "bytes": len(job.outputs[job.target])}
+            return library.read_mcz(clip)
 
-        run(
-            files,
-            work,
-            threads=jobs,
-            json=json,
-            show=lambda job: print(f"{job.target}: {job.result['bytes']} bytes"),
-            total=lambda done: print(f"{len(done)} files"),
-            debug=debug,
-        )
+        write_files(files, read, threads=jobs, json=json, debug=debug)

@@ -1,11 +1,19 @@
 """``library extract``."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mocapress.cli.library.opening import File, Label, Patterns, chosen, jobs_of, opened
+from mocapress.cli.library.opening import (
+    File,
+    Label,
+    Patterns,
+    chosen,
+    jobs_of,
+    opened,
+    write_files,
+)
 from mocapress.cli.options import Debug, Force, Jobs, Json, Models
 
 if TYPE_CHECKING:
@@ -32,7 +40,6 @@ def extract(
     debug: Debug = False,
 ) -> None:
     """Restore files with their names, folders and times, skeletons (ASF) included."""
-    from mocapress.cli.batch import run
     from mocapress.cli.models import open_models
     from mocapress.library import extracting, names
 
@@ -46,19 +53,9 @@ def extract(
         for job, item in of_job.items():
             job.target, job.force = output / names.checked(item.name), force
 
-        def work(job: "Job") -> dict[str, Any]:
-            assert job.target is not None
+        def read(job: "Job") -> bytes:
             item = of_job[job]
             job.modified = item.modified
-            job.outputs[job.target] = item.read(salvage)
-            return {"output": str(job.target), "bytes": len(job.outputs[job.target])}
+            return item.read(salvage)
 
-        run(
-            files,
-            work,
-            threads=jobs,
-            json=json,
-            show=lambda job: print(f"{job.target}: {job.result['bytes']} bytes"),
-            total=lambda done: print(f"{len(done)} files"),
-            debug=debug,
-        )
+        write_files(files, read, threads=jobs, json=json, debug=debug)

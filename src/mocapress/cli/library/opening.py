@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -78,3 +78,30 @@ def jobs_of(items: "Sequence[StoredClip | Item]") -> "list[Job]":
     from mocapress.cli.batch import Job
 
     return [Job(Path(item.name), Path(), stored=True, share=item.size or 1) for item in items]
+
+
+def write_files(
+    files: "Sequence[Job]",
+    read: "Callable[[Job], bytes]",
+    *,
+    threads: int,
+    json: bool,
+    debug: bool,
+) -> None:
+    """Write to each job's target what is read for it."""
+    from mocapress.cli.batch import run
+
+    def work(job: "Job") -> dict[str, Any]:
+        assert job.target is not None
+        job.outputs[job.target] = read(job)
+        return {"output": str(job.target), "bytes": len(job.outputs[job.target])}
+
+    run(
+        files,
+        work,
+        threads=threads,
+        json=json,
+        show=lambda job: print(f"{job.target}: {job.result['bytes']} bytes"),
+        total=lambda done: print(f"{len(done)} files"),
+        debug=debug,
+    )
