@@ -162,13 +162,9 @@ char* print_fixed(char* out, double value, const NumberFormat& format) {
   if (format.kind == NumberKind::trimmed && decimals > 0) {
     while (out[-1] == '0') --out;
     if (out[-1] == '.') {
-      if (format.point_zero) {
-        *out++ = '0';
-      } else if (!format.end_point) {
-        --out;
-      }
+      if (--out == start && !format.point_zero) *out++ = '0';
+      out = print_whole_end(out, format);
     }
-    if (out == start) *out++ = '0';
   }
   if (decimals == 0 && format.end_point) *out++ = '.';
   return out;

@@ -57,8 +57,8 @@ def fixed(size: float, kind: int, decimals: int, flags: int) -> str:
     if kind == TRIMMED and decimals:  # pragma: no cover - no golden file has it any more
         text = text.rstrip("0")
         if text.endswith("."):
-            text = text[:-1] + whole_end(flags)
-    return (text or "0") + "." * (not decimals and flags & END_POINT > 0)
+            text = (text[:-1] or "0"[: not flags & POINT_ZERO]) + whole_end(flags)
+    return text + "." * (not decimals and flags & END_POINT > 0)
 
 
 def whole_end(flags: int) -> str:

@@ -202,3 +202,20 @@ def test_frame_numbers_may_be_padded_with_zeros() -> None:
 
 def slots(row: bytes) -> list[tuple[int, int, int]]:
     return [(i, *word.span()) for i, word in enumerate(re.finditer(rb"\S+", row))]
+
+
+@pytest.mark.parametrize(
+    ("flags", "zero", "half"),
+    [
+        ({}, "0", "0.5"),
+        ({"point_zero": True}, "0.0", "0.5"),
+        ({"end_point": True}, "0.", "0.5"),
+        ({"bare_point": True}, "0", ".5"),
+        ({"bare_point": True, "point_zero": True}, ".0", ".5"),
+        ({"bare_point": True, "end_point": True}, "0.", ".5"),
+    ],
+)
+def test_trimmed_decimals_are_always_a_number(flags: dict[str, bool], zero: str, half: str) -> None:
+    trimmed = NumberFormat(NumberKind.TRIMMED, 3, **flags)
+    assert (print_one(1e-9, trimmed), print_one(0.5, trimmed)) == (zero, half)
+    assert read_one(zero) == 0
