@@ -114,7 +114,11 @@ def _codec_row(
     )
     blob, pack_s = _best(
         lambda: motion_file(
-            parts, data, path.name, [CodedStream(codec, encoded)], model, with_skeleton=False
+            parts,
+            Source(data, path.name),
+            [CodedStream(codec, encoded)],
+            model,
+            with_skeleton=False,
         ),
         repeat,
     )

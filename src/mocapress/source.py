@@ -4,6 +4,7 @@ Whatever a command or a function does with a user's file begins here.
 """
 
 import errno
+import hashlib
 import os
 import re
 import stat
@@ -193,6 +194,11 @@ class Source:
     def data(self) -> bytes:
         """All bytes, read once."""
         return self.read()
+
+    @cached_property
+    def digest(self) -> bytes:
+        """SHA-256 of all bytes."""
+        return hashlib.sha256(self.data).digest()
 
     @cached_property
     def kind(self) -> str:

@@ -123,8 +123,8 @@ def test_forged_runs_are_refused(built: tuple[bytes, dict[str, bytes]], tmp_path
         "UPDATE runs SET frames = 1 << 40",
         "UPDATE runs SET source_first = 1 << 40",
         "UPDATE runs SET source_first = -1",
-        "UPDATE runs SET first = -5",
-        "UPDATE runs SET first = 1 << 40",
+        "UPDATE runs SET first = -5 - first",
+        "UPDATE runs SET first = first + (1 << 40)",
         "UPDATE runs SET source = clip",
         "UPDATE clips SET frames = 1 << 60",
         "UPDATE clips SET head = zeroblob(100)",
@@ -134,11 +134,13 @@ def test_forged_runs_are_refused(built: tuple[bytes, dict[str, bytes]], tmp_path
         "UPDATE clips SET format = 'nonsense'",
         "UPDATE clips SET skeleton = 1 << 40",
         "UPDATE texts SET packed = zeroblob(50)",
-        "UPDATE chunks SET frames = 1 << 40",
-        "UPDATE chunks SET flags = 1 << 40",
-        "UPDATE chunks SET flags = -1",
-        "UPDATE chunks SET first = -1",
-        "UPDATE chunks SET number = number + 1",
+        "UPDATE chunks SET list = x''",
+        "UPDATE chunks SET list = x'ff'",
+        "UPDATE chunks SET list = zeroblob(20)",
+        "UPDATE chunks SET list = x'0100ffffffffff7f000001'",
+        "UPDATE chunks SET sections = x''",
+        "UPDATE chunks SET sections = substr(sections, 2)",
+        "UPDATE chunks SET clip = -clip",
     )
     for forgery in forgeries:
         path.write_bytes(data)
@@ -165,7 +167,7 @@ def test_a_damaged_clip_can_be_removed(
     path.write_bytes(data)
     with mp.open_library(path, "a") as library:
         with library.db.writing() as connection:
-            connection.execute("UPDATE chunks SET section = zeroblob(5) WHERE clip = 3")
+            connection.execute("UPDATE chunks SET sections = zeroblob(5) WHERE clip = 3")
         assert {fault.name for fault in library.check()} == {"take/2.amc"}
         library.remove("take/2.amc")
         assert not library.verify()

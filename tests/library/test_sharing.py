@@ -17,7 +17,7 @@ Take = tuple[bytes, list[bytes]]
 def stored(library: Library) -> int:
     with library.db.reading() as connection:
         found: int = connection.execute(
-            "SELECT coalesce(sum(length(section)), 0) FROM chunks"
+            "SELECT coalesce(sum(length(sections)), 0) FROM chunks"
         ).fetchone()[0]
     return found
 
@@ -230,10 +230,10 @@ def slow_hash(row: list[float]) -> int:
     return m(total % 2**64) >> 32
 
 
-@pytest.mark.parametrize("frames", [1, 2, 63, 64, 65, 200])
+@pytest.mark.parametrize("frames", [1, 2, 127, 128, 129, 400])
 def test_anchors_are_those_of_the_specification(frames: int) -> None:
     values = np.random.default_rng(1).normal(size=(frames, 5))
     hashes = [slow_hash(row) for row in values.tolist()]
     assert row_hashes(values).tolist() == hashes
-    windows = [hashes[i : i + 64] for i in range(max(1, frames - 63))]
+    windows = [hashes[i : i + 128] for i in range(max(1, frames - 127))]
     assert anchors(values).tolist() == sorted({min(window) for window in windows})

@@ -1,6 +1,5 @@
 """From motion files and clips to compressed files."""
 
-import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path, PurePath
@@ -162,8 +161,7 @@ def compress_parts(
                 own = model if way is codec else None
                 made = motion_file(
                     parts,
-                    data,
-                    stored_name(source.name),
+                    source,
                     coded_streams(parts.clip, way, own),
                     own,
                     with_skeleton=with_skeleton,
@@ -199,8 +197,7 @@ def unfit(parts: Split, size: int) -> str | None:
 
 def motion_file(
     parts: Split,
-    data: bytes,
-    name: str,
+    source: Source,
     streams: Sequence[CodedStream],
     model: Model | None = None,
     *,
@@ -212,8 +209,8 @@ def motion_file(
 
     Parameters
     ----------
-    parts, data, name
-        The motion file taken apart, its contents, and its name without folders.
+    parts, source
+        The motion file taken apart, and itself.
     streams, model
         What codecs made of the clip's streams, and with what model of the first.
     with_skeleton
@@ -231,8 +228,8 @@ def motion_file(
         record = write_layout(layout, References.of(skeleton, bones, clip.frame_time))
     else:
         record, kind = stored.record(), stored.format
-    digest = hashlib.sha256(data).digest()
-    original = Original(kind, name, len(data), digest, problems, pack(record))
+    name, size = stored_name(source.name), len(source.data)
+    original = Original(kind, name, size, source.digest, problems, pack(record))
     heads, chunks = [], []
     for index, ((of_stream, stream), (codec, encoded)) in enumerate(
         zip(clip.streams.items(), streams, strict=True)
@@ -288,11 +285,10 @@ def _checked(blob: bytes, data: bytes, codec: Codec, clip: Clip, model: Model | 
 
 
 def _compress_plain(source: Source, notes: Mapping[str, str]) -> bytes:
-    data = source.data
-    name, digest = stored_name(source.name), hashlib.sha256(data).digest()
+    data, name = source.data, stored_name(source.name)
     parts: list[bytes] = []
     writer = MczWriter(parts.append)
-    writer.original(Original("", name, len(data), digest, (), pack(data, hard=True)))
+    writer.original(Original("", name, len(data), source.digest, (), pack(data, hard=True)))
     if notes:
         writer.notes(notes)
     writer.end()

@@ -91,6 +91,16 @@ def read_chunk(content: bytes, begin: int, end: int) -> CodedChunk:
 
 def write_end(entries: Sequence[Entry]) -> bytes:
     """Give the content of the last section, for chunks in the order of the file."""
+    listed = write_list(entries)
+    length = len(listed) + DISTANCE
+    header = Writer()
+    header.integer(length)
+    distance = 1 + len(header.data) + length + CHECKSUM
+    return listed + distance.to_bytes(DISTANCE, "little")
+
+
+def write_list(entries: Sequence[Entry]) -> bytes:
+    """Give what the last section says of the chunks: all of it but its distance."""
     writer = Writer()
     writer.integer(len(entries))
     writer.runs([stream_and_flags(entry) for entry in entries])
@@ -99,11 +109,7 @@ def write_end(entries: Sequence[Entry]) -> bytes:
     writer.runs([entry.begin - end for entry, end in zip(entries, ends, strict=False)])
     for entry in entries:
         writer.integer(entry.end - entry.begin)
-    length = len(writer.data) + DISTANCE
-    header = Writer()
-    header.integer(length)
-    distance = 1 + len(header.data) + length + CHECKSUM
-    return bytes(writer.data) + distance.to_bytes(DISTANCE, "little")
+    return bytes(writer.data)
 
 
 def read_end(content: bytes, begin: int) -> list[Entry]:
@@ -116,6 +122,28 @@ def read_end(content: bytes, begin: int) -> list[Entry]:
 
     """
     reader = Reader(content, "end")
+    entries = _read_entries(reader, begin)
+    reader.raw(DISTANCE)
+    reader.end()
+    return entries
+
+
+def read_list(content: bytes, size: int) -> list[Entry]:
+    """Read what ``write_list`` gives for chunks among so many bytes.
+
+    Raises
+    ------
+    CorruptError
+        When it is no such list.
+
+    """
+    reader = Reader(content, "list of chunks")
+    entries = _read_entries(reader, size)
+    reader.end()
+    return entries
+
+
+def _read_entries(reader: Reader, begin: int) -> list[Entry]:
     # Every chunk has a length of at least one byte here, and a section before.
     count = reader.integer(min(reader.left, begin // LEAST))
     heads = reader.runs(count, _FLAGS * limits.STREAMS - 1).tolist()
@@ -132,8 +160,6 @@ def read_end(content: bytes, begin: int) -> list[Entry]:
         first = reached.get(stream, 0)
         reached[stream] = first + of_chunk
         entries.append(entry_of(head, first, of_chunk, start, place))
-    reader.raw(DISTANCE)
-    reader.end()
     return entries
 
 

@@ -76,6 +76,14 @@ def write_parts(head: Head) -> tuple[bytes, bytes]:
     return bytes(skeleton.data), pack(bytes(streams.data))
 
 
+def split_parts(content: bytes) -> tuple[bytes, bytes]:
+    """Give what ``write_parts`` gives, from the content of a section that is sound."""
+    data = unpack(content, "head", limits.UNPACKED)
+    reader = Reader(data, "head")
+    read_skeleton(reader)
+    return data[: reader.position], pack(data[reader.position :])
+
+
 def join_parts(skeleton: bytes | None, streams: bytes) -> bytes:
     """Give the content of the section from what ``write_parts`` gave; None for no skeleton.
 

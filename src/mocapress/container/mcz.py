@@ -60,6 +60,8 @@ class Mcz:
     size: int
     head: Head | None = None
     """None of a file that is no motion."""
+    head_content: bytes = b""
+    """The section that ``head`` was read from."""
     original: Original | None = None
     """None where there is no original file."""
     notes: dict[str, str] = field(default_factory=dict)
@@ -173,7 +175,7 @@ class _Collector:
         if must_know and (chunks_before or (tag == Tag.HEAD and mcz.original)):
             raise CorruptError(f"section {_name(tag)} in the wrong place", offset=begin)
         if tag == Tag.HEAD:
-            mcz.head = read_head(content)
+            mcz.head, mcz.head_content = read_head(content), content
         elif tag == Tag.FILE:
             mcz.original = read_original(content, mcz.size)
         elif tag == Tag.NOTES:

@@ -1,6 +1,7 @@
 """ASF: an Acclaim skeleton."""
 
 import re
+from functools import lru_cache
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from mocapress.formats.problems import Problem
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 
 _KEYWORD = re.compile(rb"(?:^|[\r\n])[ \t]*:(bonedata|root|hierarchy|version)\b", re.IGNORECASE)
+_SHORT = 2**16
 _RESERVED = frozenset({"root", "begin", "end"})
 
 
@@ -24,13 +26,24 @@ def parse_asf(data: bytes, file: str | None = None) -> Skeleton:
         When it does not follow the format: with line, expected and found.
 
     """
+    found = (_of_recent if len(data) <= _SHORT else _of)(data)
+    if isinstance(found, Problem):
+        raise found.error(file)
+    return found
+
+
+def _of(data: bytes) -> Skeleton | Problem:
     text = FileText.of(data)
     read = _core.read_asf(text.data)
     if read.fault:
-        raise Problem.told(read.fault, text).error(file)
+        return Problem.told(read.fault, text)
     joints = tuple(Joint(*joint) for joint in read.joints)
     unit = "rad" if read.radians else "deg"
     return Skeleton(joints, "fixed", unit, read.length_unit, read.name, {"mass": read.mass})
+
+
+# Many clips in a row have one skeleton; as one object it is written only once, too.
+_of_recent = lru_cache(4)(_of)
 
 
 def format_asf(skeleton: Skeleton) -> bytes:

@@ -1,6 +1,5 @@
 """Adding to a library: clips are coded first, and then written at once, each in a transaction."""
 
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -11,7 +10,7 @@ import numpy as np
 from mocapress.api.compressing import taken_apart
 from mocapress.api.restoring import contents
 from mocapress.container import Companion, Mcz, pack
-from mocapress.container.head import Head, write_parts
+from mocapress.container.head import Head, split_parts
 from mocapress.container.original import write_problems
 from mocapress.errors import VerificationError
 from mocapress.library import names, rows
@@ -106,7 +105,7 @@ class Adder:
         if source.kind == MCZ:
             made = self.coder.mcz(source)
             return self._write(made, name, extra)
-        data, digest = source.data, hashlib.sha256(source.data).digest()
+        data, digest = source.data, source.digest
         unchanged = None if again else self._unchanged(name, digest, extra)
         if unchanged is not None:
             return unchanged
@@ -170,8 +169,8 @@ class Adder:
                     "place",
                     file=name,
                 )
-            known.refresh(connection)
-            if code and self._is_late(connection, made, digest):
+            came_meanwhile = known.refresh(connection) > made.newest
+            if code and came_meanwhile and self._is_late(connection, made, digest):
                 made = code(old)
             labels: Sequence[str] = ()
             if old is not None:
@@ -275,7 +274,7 @@ def store_head(connection: Connection, mcz: Mcz) -> tuple[bytes | None, str | No
     if mcz.head is None:
         return None, None, None
     head: Head = mcz.head
-    skeleton, streams = write_parts(head)
+    skeleton, streams = split_parts(mcz.head_content)
     number = None
     if head.skeleton is not None:
         number = rows.skeleton_id(

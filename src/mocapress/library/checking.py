@@ -140,7 +140,11 @@ def _read(
         yield Fault(name, "facts: wrong checksum")
     opened = OpenedClip(db, clip, salvage=True)
     for index in range(len(opened.streams)):
-        own[clip, index] = opened.own_frames(index)
+        announced = own[clip, index] = opened.own_frames(index)
+        found = sum(entry.frames for entry in opened.mcz.of_stream[index])
+        if found != announced:
+            yield Fault(name, f"chunks have {found} frames of {announced}")
+            damaged.setdefault((clip, index), []).append(range(announced))
     for where, error in opened.damage:
         yield Fault(name, f"{where}: {error.what}")
     for entry in opened.mcz.entries:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapress.api.clips import compress_clip
-from mocapress.api.compressing import compress_parts, motion_file, stored_name, unfit
+from mocapress.api.compressing import compress_parts, motion_file, unfit
 from mocapress.api.encoding import coded_streams
 from mocapress.api.opening import Opened
 from mocapress.api.restoring import contents
@@ -154,8 +154,7 @@ class Coder:
         rest = without_runs(parts.clip, runs)
         model = self.model if way is self.codec else None
         streams = coded_streams(rest, way, model, parts.clip)
-        name = stored_name(source.name)
-        blob = motion_file(parts._replace(clip=rest), source.data, name, streams, model)
+        blob = motion_file(parts._replace(clip=rest), source, streams, model)
         opened = Opened(Source(blob), [model] if model else [])
         for index, (coded, stream) in enumerate(zip(streams, rest.streams.values(), strict=True)):
             decoded = opened.rows(index).values

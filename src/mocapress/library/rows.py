@@ -5,14 +5,15 @@ import sqlite3
 import struct
 import zlib
 from collections.abc import Callable, Mapping, Sequence
+from itertools import accumulate, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.codecs import Model
-from mocapress.container import Entry, Mcz, pack, unpack
-from mocapress.container.chunks import stream_and_flags
+from mocapress.container import Mcz, pack, unpack
+from mocapress.container.chunks import write_list
 from mocapress.library import names
 from mocapress.models import model_bytes
 
@@ -182,15 +183,17 @@ def companion_id(
 
 def insert_chunks(connection: Connection, clip: int, mcz: Mcz) -> None:
     """Add the chunks of a file as they are."""
-    connection.executemany(
-        "INSERT INTO chunks(clip, number, flags, first, frames, section) VALUES(?, ?, ?, ?, ?, ?)",
-        (_chunk(clip, number, entry, mcz) for number, entry in enumerate(mcz.entries)),
+    if not mcz.entries:
+        return
+    sections = [mcz.ranges.read(entry.begin, entry.end) for entry in mcz.entries]
+    places = pairwise(accumulate(map(len, sections), initial=0))
+    moved = [
+        entry._replace(begin=begin, end=end)
+        for entry, (begin, end) in zip(mcz.entries, places, strict=True)
+    ]
+    connection.execute(
+        "INSERT INTO chunks VALUES(?, ?, ?)", (clip, write_list(moved), b"".join(sections))
     )
-
-
-def _chunk(clip: int, number: int, entry: Entry, mcz: Mcz) -> tuple[int, int, int, int, int, bytes]:
-    section = mcz.ranges.read(entry.begin, entry.end)
-    return clip, number, stream_and_flags(entry), entry.first, entry.frames, section
 
 
 def insert_runs(connection: Connection, clip: int, runs: Sequence[Run]) -> None:

@@ -27,9 +27,8 @@ CREATE TABLE clips(id INTEGER PRIMARY KEY AUTOINCREMENT, name TEXT NOT NULL UNIQ
     sha256 BLOB, modified INTEGER, skeleton INTEGER REFERENCES skeletons,
     text INTEGER REFERENCES texts, codec TEXT, head BLOB, problems BLOB,
     checksum INTEGER NOT NULL) STRICT;
-CREATE TABLE chunks(id INTEGER PRIMARY KEY, clip INTEGER NOT NULL REFERENCES clips,
-    number INTEGER NOT NULL, flags INTEGER NOT NULL, first INTEGER NOT NULL,
-    frames INTEGER NOT NULL, section BLOB NOT NULL) STRICT;
+CREATE TABLE chunks(clip INTEGER PRIMARY KEY REFERENCES clips, list BLOB NOT NULL,
+    sections BLOB NOT NULL) STRICT;
 CREATE TABLE runs(clip INTEGER NOT NULL REFERENCES clips, stream INTEGER NOT NULL,
     first INTEGER NOT NULL, frames INTEGER NOT NULL, source INTEGER NOT NULL REFERENCES clips,
     source_first INTEGER NOT NULL, PRIMARY KEY(clip, stream, first)) STRICT, WITHOUT ROWID;
@@ -47,7 +46,6 @@ CREATE TABLE anchors(clip INTEGER PRIMARY KEY REFERENCES clips, hashes BLOB NOT 
 CREATE INDEX texts_by_hash ON texts(hash);
 CREATE INDEX clips_by_skeleton ON clips(skeleton);
 CREATE INDEX clips_by_text ON clips(text);
-CREATE INDEX chunks_by_clip ON chunks(clip, number);
 CREATE INDEX runs_by_source ON runs(source);
 CREATE INDEX companions_by_text ON companions(text);
 CREATE INDEX belongs_by_companion ON belongs(companion);
@@ -55,7 +53,7 @@ CREATE INDEX labels_by_label ON labels(label);
 CREATE VIEW catalogue AS SELECT clips.name AS name, format, frames, channels,
     frames * frame_time AS seconds, 1 / frame_time AS rate, skeletons.name AS skeleton,
     (SELECT group_concat(label, ',') FROM labels WHERE labels.clip = clips.id) AS labels, size,
-    (SELECT coalesce(sum(length(section)), 0) FROM chunks WHERE chunks.clip = clips.id) AS stored,
+    coalesce((SELECT length(sections) FROM chunks WHERE chunks.clip = clips.id), 0) AS stored,
     codec, lower(hex(sha256)) AS sha256, datetime(modified / 1000000000, 'unixepoch') AS modified
     FROM clips LEFT JOIN skeletons ON skeletons.id = clips.skeleton;
 """

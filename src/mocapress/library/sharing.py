@@ -14,14 +14,14 @@ from mocapress.library.opened import OpenedClip
 from mocapress.library.rows import Run
 from mocapress.models import Place
 
-WINDOW = 64
+WINDOW = 128
 """Of so many successive frames the one of the smallest hash is an anchor."""
 _LEAST_FRAMES = 32
 """A shorter run costs about as much as its frames."""
 _LEAST_DIFFERENT = 16
 """A run of fewer different frames is a still, which costs next to nothing as it is."""
-_LEAST_SHARED = 2
-"""Anchors that a clip must share; a clip with 128 equal frames does."""
+_MOST_OWNERS = 16
+"""An anchor of more clips is a pose that many take, such as that of calibration."""
 _MOST_CANDIDATES = 4
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _HALF = np.uint64(32)
@@ -94,10 +94,15 @@ class Known:
         with self._lock:
             self._recent.append((clip, hashes))
 
-    def _sort(self) -> None:
+    def _all_recent(self) -> tuple[Hashes, NDArray[np.int64]]:
+        """Give the anchors that are not sorted in yet, and whose they are."""
         sizes = [len(hashes) for _, hashes in self._recent]
         owners = np.repeat(np.array([clip for clip, _ in self._recent], np.int64), sizes)
-        hashes = np.concatenate([self._hashes, *(hashes for _, hashes in self._recent)])
+        return np.concatenate([*(hashes for _, hashes in self._recent), self._hashes[:0]]), owners
+
+    def _sort(self) -> None:
+        recent, owners = self._all_recent()
+        hashes = np.concatenate([self._hashes, recent])
         order = np.argsort(hashes, kind="stable")
         self._hashes, self._owners = hashes[order], np.concatenate([self._owners, owners])[order]
         self._recent = []
@@ -113,22 +118,28 @@ class Known:
         with self._lock:
             shared = self._shared(hashes)
             equal = self._files.get(sha256 or b"")
-        ranked = [clip for clip, count in shared.most_common() if count >= _LEAST_SHARED]
+        ranked = [clip for clip, _ in shared.most_common()]
         first_of_all = [] if equal is None else [equal, *_sources(connection, equal)]
         found = dict.fromkeys([*first_of_all, *ranked[:_MOST_CANDIDATES]])
         return [clip for clip in found if clip > after]
 
     def _shared(self, hashes: Hashes) -> Counter[int]:
         """Count the anchors that each clip shares."""
-        shared: Counter[int] = Counter()
         begin = np.searchsorted(self._hashes, hashes, "left")
         end = np.searchsorted(self._hashes, hashes, "right")
-        for first, last in zip(begin.tolist(), end.tolist(), strict=True):
-            shared.update(set(self._owners[first:last].tolist()))
-        for clip, others in self._recent:
-            places = np.searchsorted(others, hashes)
-            places[places == len(others)] = 0
-            shared[clip] += int((others[places] == hashes).sum()) if len(others) else 0
+        owners = [
+            self._owners[first:last].tolist()
+            for first, last in zip(begin.tolist(), end.tolist(), strict=True)
+        ]
+        recent, recent_owners = self._all_recent()
+        places = np.minimum(np.searchsorted(hashes, recent), max(len(hashes) - 1, 0))
+        hit = np.flatnonzero(hashes[places] == recent) if len(hashes) else []
+        for i in hit:
+            owners[places[i]].append(int(recent_owners[i]))
+        shared: Counter[int] = Counter()
+        for of_one in map(set, owners):
+            if len(of_one) <= _MOST_OWNERS:
+                shared.update(of_one)
         return shared
 
 

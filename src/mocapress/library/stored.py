@@ -1,17 +1,16 @@
 """The ``.mcz`` of a clip in a library: put together from the tables as far as it is read."""
 
 import sqlite3
-from bisect import bisect_right
-from itertools import accumulate, pairwise
 
-from mocapress.container import Original, unpack
-from mocapress.container.chunks import entry_of, write_end
+from mocapress.container import Entry, Original, unpack
+from mocapress.container.chunks import read_list, write_end
 from mocapress.container.head import join_parts
 from mocapress.container.limits import UNPACKED
 from mocapress.container.original import read_problems, write_notes, write_original
 from mocapress.container.sections import section
 from mocapress.container.tags import MAGIC, VERSION, Tag
 from mocapress.errors import CorruptError, ParameterError
+from mocapress.library.chunks import Chunks
 from mocapress.library.database import Database
 from mocapress.library.rows import Facts, checksum, hash_of, read_clip
 from mocapress.records import Reader
@@ -49,57 +48,37 @@ class StoredMcz(Source):
         """Whether the row of the clip has the right checksum."""
         if not self.sound and not (salvage and _possible(self.facts)):
             raise CorruptError("the facts have a wrong checksum", file=self.name)
-        rows = db.connection.execute(
-            "SELECT flags, first, frames, length(section) FROM chunks WHERE clip = ? "
-            "ORDER BY number",
-            [clip],
-        ).fetchall()
-        if any(flags < 0 or first < 0 or frames < 1 for flags, first, frames, _ in rows):
-            raise CorruptError("damaged: the list of chunks", file=self.name)
         self._front = self._before_chunks()
-        self._starts = [*accumulate((row[3] for row in rows), initial=len(self._front))]
-        places = pairwise(self._starts)
+        self._chunks = Chunks(db, clip, salvage=salvage)
+        start = len(self._front)
+        self._behind = start + self._chunks.size
         entries = [
-            entry_of(flags, first, frames, begin, end)
-            for (flags, first, frames, _), (begin, end) in zip(rows, places, strict=True)
+            entry._replace(begin=start + entry.begin, end=start + entry.end)
+            for entry in self._listed()
         ]
         self._end = section(Tag.END, write_end(entries))
+
+    def _listed(self) -> list[Entry]:
+        try:
+            return read_list(self._chunks.listed, self._chunks.size)
+        except CorruptError as error:
+            raise CorruptError("damaged: the list of chunks", file=self.name) from error
 
     @property
     def size(self) -> int:
         """Number of bytes."""
-        return int(self._starts[-1]) + len(self._end)
+        return self._behind + len(self._end)
 
     def read(self, start: int = 0, stop: int | None = None) -> bytes:
         """Give bytes [start, stop), or as many of them as there are."""
         stop = self.size if stop is None else min(stop, self.size)
-        parts = []
-        while start < stop:
-            begin, part = self._part(start)
-            parts.append(part[start - begin : stop - begin])
-            start = begin + len(part)
-        return parts[0] if len(parts) == 1 else b"".join(parts)
-
-    def _part(self, at: int) -> tuple[int, bytes]:
-        """Give the part of the file that holds a byte, and where it begins."""
-        number = bisect_right(self._starts, at) - 1
-        if number < 0:
-            return 0, self._front
-        begin = self._starts[number]
-        if number == len(self._starts) - 1:
-            return begin, self._end
-        size = self._starts[number + 1] - begin
-        found = b""
-        try:
-            row = self.db.connection.execute(
-                "SELECT section FROM chunks WHERE clip = ? AND number = ?", (self.clip, number)
-            ).fetchone()
-            found = row[0] if row else b""
-        except sqlite3.DatabaseError:
-            if not self._salvage:
-                raise
-        # What cannot be read has a wrong checksum, as it would in a file.
-        return begin, found if len(found) == size else bytes(size)
+        front, behind = len(self._front), self._behind
+        parts = [self._front[start:stop]]
+        if start < behind and stop > front:
+            parts.append(self._chunks.read(max(start - front, 0), min(stop, behind) - front))
+        if stop > behind:
+            parts.append(self._end[max(start - behind, 0) : stop - behind])
+        return b"".join(parts)
 
     def _before_chunks(self) -> bytes:
         facts = self.facts
