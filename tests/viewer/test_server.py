@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from mocapress.viewer.server import PageServer
+from mocapress.viewer.server import Answer, PageServer
 
 
 @pytest.fixture
@@ -66,3 +66,21 @@ def test_it_only_gives(server: PageServer, method: str) -> None:
 def test_a_port_that_is_taken_is_an_error(server: PageServer) -> None:
     with pytest.raises(OSError, match="in use"):
         PageServer("", "", server.server_port)
+
+
+def test_what_the_page_asks_for_is_given_to_the_page_only() -> None:
+    def more(path: str) -> Answer | None:
+        return Answer(b"more") if path == "/more" else None
+
+    with PageServer("<p>page</p>", "default-src 'none'", 0, more) as made:
+        thread = threading.Thread(target=made.serve_forever, kwargs={"poll_interval": 0.02})
+        thread.start()
+        assert ask(made, "/more")[0::2] == (200, b"more")
+        assert ask(made, "/less")[0] == 404
+        for site, status in (("same-origin", 200), ("cross-site", 404), ("none", 404)):
+            connection = http.client.HTTPConnection("127.0.0.1", made.server_port, timeout=30)
+            connection.request("GET", "/more", headers={"Sec-Fetch-Site": site})
+            assert connection.getresponse().status == status
+            connection.close()
+        made.shutdown()
+        thread.join()

@@ -4,6 +4,7 @@ import { Inspector } from "./panels/inspector.js";
 import { listenToKeys } from "./panels/keyboard.js";
 import { labelCells, legend, showKeys } from "./panels/labels.js";
 import { lengthText } from "./panels/lengths.js";
+import { LibraryPanel } from "./panels/library.js";
 import { Notices } from "./panels/notice.js";
 import { Timeline } from "./panels/timeline.js";
 import { message } from "./reading/files.js";
@@ -30,6 +31,8 @@ export class App {
     this.viewport = new Viewport(this.at("canvas"));
     this.timeline = new Timeline(this.at("timeline"), this.player);
     this.inspector = new Inspector(this.at("inspector"), this.player);
+    this.libraryPanel = new LibraryPanel(this.at("library"));
+    this.library = null;
     this.trails = true;
     this.#wire();
     this.#setTheme(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
@@ -48,12 +51,39 @@ export class App {
     if (await this.#read(how, (begun) => this.reader.files(files, begun))) this.player.play(true);
   }
 
+  /**
+   * Show a library's list, and its first clip.
+   *
+   * @param {import("./reading/served.js").ServedLibrary} library
+   */
+  async openLibrary(library) {
+    const { clips, errors } = await library.catalogue();
+    this.library = library;
+    this.libraryPanel.show(library.name, clips);
+    this.at("show-library").hidden = false;
+    this.#toggleLibrary(true);
+    this.notices.show(errors);
+    if (clips.length && !isNarrow()) await this.#openStored(clips[0], "replace");
+    else if (!this.lineup.takes.length) document.body.classList.add("empty");
+  }
+
+  async #openStored(clip, how) {
+    this.libraryPanel.mark(clip.id);
+    if (isNarrow()) this.#toggleLibrary(false);
+    this.asked = clip;
+    const { library } = this;
+    const isWanted = () => how === "add" || this.asked === clip;
+    const shown = await this.#read(how, (begun) => library.read(clip, begun), isWanted);
+    if (shown) this.player.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+  }
+
   /** Show what is read, of long clips the beginning while the rest is read; whether there is any. */
-  async #read(how, read) {
+  async #read(how, read, isWanted = () => true) {
     document.body.classList.add("reading");
     const { clips, errors } = await read((beginning) => {
-      if (how === "replace") this.#open(beginning.clips, [], how);
+      if (how === "replace" && isWanted()) this.#open(beginning.clips, [], how);
     });
+    if (!isWanted()) return false; // another was chosen meanwhile
     document.body.classList.remove("reading");
     this.#open(clips, errors, how);
     return clips.length > 0;
@@ -153,6 +183,8 @@ export class App {
       reframe: () => this.viewport.frame(),
       "show-inspector": () => this.#toggleInspector(),
       "close-inspector": () => this.#toggleInspector(false),
+      "show-library": () => this.#toggleLibrary(),
+      "close-library": () => this.#toggleLibrary(false),
       theme: () =>
         this.#setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"),
       help: () => this.#toggleHelp(),
@@ -169,6 +201,9 @@ export class App {
     at("speed").addEventListener("change", () => player.setSpeed(Number(at("speed").value)));
     player.addEventListener("change", () => this.#changed());
     this.inspector.addEventListener("choose", () => this.#changed());
+    this.libraryPanel.addEventListener("choose", ({ detail: { clip, how } }) =>
+      this.#openStored(clip, how),
+    );
     const parts = { veil: at("veil"), replace: at("replace-files"), add: at("add-files") };
     acceptFiles(parts, (files, how) => this.openFiles(files, how));
     const bindings = this.#bindings();
@@ -217,6 +252,7 @@ export class App {
         text: "inspector of channels",
         act: () => this.#toggleInspector(),
       },
+      { keys: ["l"], label: "L", text: "list of the library", act: () => this.#toggleLibrary() },
       { keys: ["d"], label: "D", text: "dark or light", act: () => this.at("theme").click() },
       { keys: ["?"], label: "?", text: "this list", act: () => this.#toggleHelp() },
     ];
@@ -288,6 +324,11 @@ export class App {
     this.inspector.draw();
   }
 
+  #toggleLibrary(shown = this.at("library").hidden) {
+    this.at("library").hidden = !shown || !this.library;
+    this.at("show-library").setAttribute("aria-pressed", String(!this.at("library").hidden));
+  }
+
   #toggleHelp() {
     const keys = this.at("keys");
     if (keys.open) keys.close();
@@ -301,4 +342,8 @@ export class App {
     this.inspector.draw();
     this.#changed();
   }
+}
+
+function isNarrow() {
+  return matchMedia("(max-width: 760px)").matches;
 }

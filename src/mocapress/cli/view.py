@@ -1,17 +1,24 @@
 """``view``."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from mocapress.cli.options import Asf, Debug, Force, Lenient
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from mocapress.viewer.server import Answer
+
 
 def view(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Motion files; given two, the second is compared with the first."),
+        typer.Argument(
+            help="Motion files; given two, the second is compared with the first. Or one library."
+        ),
     ] = None,
     export: Annotated[
         Path | None,
@@ -47,6 +54,9 @@ def view(
     from mocapress.viewer import embed, page
 
     inputs = files or []
+    if any(path.suffix.lower() == ".mocapdb" for path in inputs):
+        _serve_library(inputs, export, port, browser=browser, strict=not lenient, debug=debug)
+        return
     refuse_other_kinds(str(export) if export else None, (".html",), known_endings())
     stated = max_error if export else None
     name = ""
@@ -70,7 +80,8 @@ def view(
         title = " · ".join(path.name for path in inputs) or "mocapress"
         # Names of files need not be UTF-8, a page is.
         title = title.encode(errors="surrogateescape").decode(errors="replace")
-        document = page.document(clips, title, assets=embed.assets(clips) if export else None)
+        assets = embed.assets(clips) if export else None
+        document = page.document(clips, title, assets=assets, served=export is None)
         if export:
             name = str(export)
             write_whole(export, document.encode(), force=force)
@@ -85,15 +96,53 @@ def view(
         _serve(document, port, browser=browser)
 
 
-def _serve(document: str, port: int, *, browser: bool) -> None:
+def _serve_library(
+    inputs: list[Path],
+    export: Path | None,
+    port: int,
+    *,
+    browser: bool,
+    strict: bool,
+    debug: bool,
+) -> None:
+    from mocapress.cli.batch import usage
+    from mocapress.cli.report import message, say
+    from mocapress.errors import MocapressError
+    from mocapress.viewer import page
+    from mocapress.viewer.library import ServedLibrary
+
+    library = inputs[0]
+    if len(inputs) > 1:
+        usage("a library is viewed alone; expected one file")
+    if export is not None:
+        usage("--export makes a page of clips, not of a library; `library extract` gives its clips")
+    try:
+        with ServedLibrary(library, strict=strict) as served:
+            name = library.name.encode(errors="surrogateescape").decode(errors="replace")
+            document = page.document([], name, served=True, library=name)
+            _serve(document, port, browser=browser, more=served.answer)
+    except (MocapressError, OSError) as error:
+        if debug:
+            raise
+        say(message(error, str(library)))
+        raise typer.Exit(1) from error
+
+
+def _serve(
+    document: str,
+    port: int,
+    *,
+    browser: bool,
+    more: "Callable[[str], Answer | None] | None" = None,
+) -> None:
     import webbrowser
 
     from mocapress.cli.batch import usage
     from mocapress.viewer import page
-    from mocapress.viewer.server import PageServer
+    from mocapress.viewer.server import PageServer, nothing
 
     try:
-        server = PageServer(document, page.policy(), port)
+        server = PageServer(document, page.policy(served=True), port, more or nothing)
     except OSError as error:
         usage(f"port {port}: {error.strerror}")
     with server:

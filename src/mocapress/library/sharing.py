@@ -133,9 +133,9 @@ class Known:
         ]
         recent, recent_owners = self._all_recent()
         places = np.minimum(np.searchsorted(hashes, recent), max(len(hashes) - 1, 0))
-        hit = np.flatnonzero(hashes[places] == recent) if len(hashes) else []
-        for i in hit:
-            owners[places[i]].append(int(recent_owners[i]))
+        if len(hashes):
+            for i in np.flatnonzero(hashes[places] == recent):
+                owners[places[i]].append(int(recent_owners[i]))
         shared: Counter[int] = Counter()
         for of_one in map(set, owners):
             if len(of_one) <= _MOST_OWNERS:

@@ -11,7 +11,7 @@ from mocapress import api
 from mocapress.api.opening import Opened
 from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.exact import Exact
-from mocapress.container import Head, MczWriter, diffma_json, open_mcz
+from mocapress.container import Head, Mcz, MczWriter, diffma_json, open_mcz
 from mocapress.errors import MocapressError, UnsupportedError
 from mocapress.motion import Clip
 from mocapress.motion.clip import MOTION
@@ -66,7 +66,7 @@ def file(
             raise UnsupportedError("no frames to be played")
         if max_error is not None:
             return approximate(clip, max_error, path.name)
-        if source.kind == MCZ and (blob := _as_coded(source, clip)):
+        if source.kind == MCZ and (blob := as_coded(Opened(source).mcz, clip)):
             return _named(clip, path.name) | {"mcz": base64.b64encode(blob).decode()}
         return exact(clip, path.name, level=level)
     except MocapressError as error:
@@ -103,12 +103,22 @@ _HEAD = 6
 """Where the length of the first section stands."""
 
 
-def _as_coded(source: Source, clip: Clip) -> bytes | None:
-    """Give the first stream of a ``.mcz``, loaded as ``clip``, with its chunks as they are.
+def as_coded(mcz: Mcz, clip: Clip) -> bytes | None:
+    """Give the first stream of a ``.mcz`` with its chunks as they are.
 
-    None where the page cannot decode it.
+    Parameters
+    ----------
+    mcz
+        The file.
+    clip
+        What it holds, or some frames of it: for columns and skeleton.
+
+    Returns
+    -------
+    bytes or None
+        A ``.mcz``; None where the page cannot decode it.
+
     """
-    mcz = Opened(source).mcz
     stream = mcz.head.streams[0] if mcz.head else None
     known = stream and f"wasm/{stream.codec.id}.wasm" in page.asset_names()
     if stream is None or not known or stream.model or not mcz.closed:

@@ -29,6 +29,7 @@ _VENDORED = {
     "three/addons/controls/OrbitControls.js": "vendor/three/OrbitControls.js",
 }
 _DICTIONARY = "dictionary1.bin"
+_CONNECT = "connect-src 'self'; "
 _XZ = "vendor/xz/xz.wasm"
 _KINEMATICS = "wasm/kinematics.wasm"
 _IMPORT = re.compile(r"""(\b(?:from|import)\s*)(["'])([^"'\n]+)\2""")
@@ -39,6 +40,8 @@ def document(
     title: str = "mocapress",
     *,
     assets: Collection[str] | None = None,
+    served: bool = False,
+    library: str | None = None,
 ) -> str:
     """Give the page that plays these clips.
 
@@ -51,17 +54,22 @@ def document(
     assets
         The binary files that the page carries, of ``asset_names``; None carries all, so that it
         plays every file that is dropped on it.
+    served
+        Whether the page comes from a ``PageServer``, of which it may ask for more.
+    library
+        Name of the library that the server offers.
 
     Returns
     -------
     str
-        HTML. Its policy (``policy``) allows no requests at all.
+        HTML. Its policy (``policy``) allows no requests, but those to its server where it has one.
 
     """
     # In a script element only "<" can end the text early or begin a comment.
     motion = json.dumps({"clips": clips}, separators=(",", ":")).replace("<", "\\u003c")
     head = (
-        f'<meta http-equiv="Content-Security-Policy" content="{policy()}">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy(served=served)}">\n'
+        f"{_about(served=served, library=library)}"
         f"<title>{_escaped(title)}</title>\n<style>{_text('page/style.css')}</style>"
     )
     carried = encoded(asset_names() if assets is None else assets)
@@ -78,11 +86,14 @@ def document(
     return markup.replace("<!-- head -->", head).replace("<!-- body -->", body)
 
 
-def policy() -> str:
-    """Give the content security policy: only the page's own scripts and style, no connections."""
+def policy(*, served: bool = False) -> str:
+    """Give the content security policy: only the page's own scripts and style.
+
+    There are no connections, but to the server of a page that is served.
+    """
     return (
         f"default-src 'none'; script-src {_digest(_text(_START))} blob: 'wasm-unsafe-eval'; "
-        "worker-src blob:; "
+        f"{_CONNECT if served else ''}worker-src blob:; "
         f"style-src {_digest(_text('page/style.css'))}; "
         "img-src data:; base-uri 'none'; form-action 'none'"
     )
@@ -169,5 +180,13 @@ def _digest(text: str) -> str:
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
+def _about(*, served: bool, library: str | None) -> str:
+    """Say whom the page may ask, and for what."""
+    parts = ['<meta name="served" content="">\n'] if served else []
+    if library is not None:
+        parts.append(f'<meta name="library" content="{_escaped(library)}">\n')
+    return "".join(parts)
+
+
 def _escaped(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;")
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")

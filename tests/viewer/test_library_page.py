@@ -1,0 +1,196 @@
+"""A library on the page: its list, its clips, and what the server gives of it."""
+
+import json
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from browsing import LAPTOP, PHONE, Visit, chromium, coloured
+from playwright.sync_api import Browser
+from typer.testing import CliRunner
+
+import mocapress as mp
+from mocapress.cli.app import app
+from mocapress.codecs import Model
+from mocapress.viewer import page
+from mocapress.viewer.library import ServedLibrary
+from mocapress.viewer.server import PageServer
+
+AMC, ASF, BVH = "cmu_01_01.amc", "cmu_01_01.asf", "mocapbank.bvh"
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with chromium() as started:
+        yield started
+
+
+@pytest.fixture
+def path(tmp_path: Path, samples: Path) -> Path:
+    """A library: three takes, a cut of one of them, a lossy clip, and a text."""
+    file = tmp_path / "takes.mocapdb"
+    with mp.open_library(file, "a") as library:
+        library.add(samples / AMC, f"cmu/{AMC}", labels=["walk"])
+        library.add(samples / BVH, f"bank/{BVH}", labels=["walk", "slow"])
+        library.add(samples / "freebvh.bvh", "<b>free.bvh", codec="app")
+        library.add(mp.read(samples / AMC)[100:900], "cut")
+        library.add(b"no motion", "read.me")
+    return file
+
+
+@contextmanager
+def served(browser: Browser, path: Path, size: tuple[int, int] = LAPTOP) -> Iterator[Visit]:
+    document = page.document([], path.name, served=True, library=path.name)
+    with (
+        ServedLibrary(path) as library,
+        PageServer(document, page.policy(served=True), 0, library.answer) as server,
+    ):
+        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
+        thread.start()
+        context = browser.new_context(viewport={"width": size[0], "height": size[1]})
+        try:
+            visit = Visit(context.new_page())
+            visit.page.goto(server.url)
+            visit.until("document.querySelectorAll('.clips [role=option]').length > 0")
+            yield visit
+        finally:
+            context.close()
+            server.shutdown()
+            thread.join()
+        assert visit.logged == []
+        assert {url.removeprefix(server.url).split("/")[0] for url in visit.asked} <= {
+            "",
+            "catalogue",
+            "clips",
+        }
+
+
+def listed(visit: Visit) -> list[str]:
+    names: list[str] = visit.page.locator(".clips [role=option] > span").all_inner_texts()
+    return names
+
+
+def plays(visit: Visit, name: str, frames: int) -> None:
+    visit.page.locator(".clips button", has_text=name).click()
+    visit.until(f"document.querySelector('#frame').textContent.endsWith('/ {frames}')")
+    visit.until("document.body.dataset.frame > 0")
+    assert coloured(visit.pixels(), 2) > 500
+
+
+def test_a_click_plays_a_clip(browser: Browser, path: Path) -> None:
+    with served(browser, path) as visit:
+        assert listed(visit) == ["<b>free.bvh", f"bank/{BVH}", f"cmu/{AMC}", "cut"]
+        visit.until("document.querySelector('#frame').textContent.endsWith('/ 69')")  # the first
+        plays(visit, BVH, 455)
+        assert visit.names() == [f"bank/{BVH}"]
+        plays(visit, "cut", 800)  # whose frames the library has once
+        plays(visit, AMC, 2751)
+        visit.page.locator(".clips button", has_text="cut").click(modifiers=["Shift"])
+        visit.until("document.querySelectorAll('#legend b').length === 2")
+
+
+def test_the_list_is_filtered(browser: Browser, path: Path) -> None:
+    with served(browser, path) as visit:
+        search = visit.page.locator("#library [type=search]")
+        search.fill("walk bvh")
+        assert listed(visit) == [f"bank/{BVH}"]
+        assert visit.text("#library output") == "1 of 4 clips"
+        search.fill("")
+        visit.page.locator("#library [name=labels]").select_option("walk")
+        assert listed(visit) == [f"bank/{BVH}", f"cmu/{AMC}"]
+        visit.page.locator("#library [name=labels]").select_option("")
+        visit.page.locator("#library [name=format]").select_option("bvh")
+        assert listed(visit) == ["<b>free.bvh", f"bank/{BVH}"]
+        visit.page.get_by_label("Least seconds").fill("3")
+        assert listed(visit) == [f"bank/{BVH}"]
+        visit.page.get_by_label("Least seconds").fill("")
+        visit.page.get_by_label("Most seconds").fill("3")
+        assert listed(visit) == ["<b>free.bvh"]
+
+
+def test_a_long_list_is_made_in_parts(browser: Browser, tmp_path: Path, samples: Path) -> None:
+    path = tmp_path / "many.mocapdb"
+    clip = mp.read(samples / BVH)
+    with mp.open_library(path, "a") as library, library.db.writing():
+        for number in range(230):
+            library.add(clip[number : number + 4], f"{number:03}", codec="exact:level=1")
+    with served(browser, path) as visit:
+        assert len(listed(visit)) == 200
+        visit.page.locator(".clips .more").click()
+        assert listed(visit) == [f"{number:03}" for number in range(230)]
+
+
+def test_on_a_phone_the_list_makes_room(browser: Browser, path: Path) -> None:
+    with served(browser, path, PHONE) as visit:
+        visit.page.locator(".clips button", has_text=BVH).click()
+        visit.until("document.body.dataset.frame > 0")
+        assert not visit.page.locator("#library").is_visible()
+        visit.page.locator("#show-library").click()
+        assert visit.page.locator("#library").is_visible()
+
+
+def test_a_damaged_clip_is_told_of(browser: Browser, path: Path) -> None:
+    with mp.open_library(path, "a") as library, library.db.writing() as connection:
+        connection.execute("UPDATE chunks SET sections = zeroblob(length(sections)) WHERE clip = 2")
+    with served(browser, path) as visit:
+        visit.until("document.body.dataset.frame > 0")
+        visit.page.locator(".clips button", has_text=BVH).click()
+        visit.until("document.querySelector('.notice') !== null")
+        assert f"bank/{BVH}" in visit.text(".notice")
+        assert "chunk of frames 0 to 454" in visit.text(".notice")
+        plays(visit, AMC, 2751)  # the others play
+
+
+def test_the_server_gives_what_the_library_has(path: Path, samples: Path) -> None:
+    with ServedLibrary(path) as library:
+        catalogue = library.answer("/catalogue")
+        assert catalogue is not None
+        clips = {clip["name"]: clip for clip in json.loads(catalogue.content)["clips"]}
+        assert clips[f"bank/{BVH}"]["labels"] == ["slow", "walk"]
+        assert clips[f"bank/{BVH}"]["seconds"] == pytest.approx(455 / 30, rel=1e-3)
+        for name, values in (
+            (f"cmu/{AMC}", mp.read(samples / AMC).values),
+            ("cut", mp.read(samples / AMC).values[100:900]),
+        ):
+            answer = library.answer(f"/clips/{clips[name]['id']}")
+            assert answer is not None
+            assert answer.status == 200
+            assert mp.load(answer.content).values.tobytes() == values.tobytes()
+        assert library.answer("/clips/99").status == 409  # type: ignore[union-attr]
+        assert library.answer("/clips/9999999999999999999999") is None
+        assert library.answer("/clips/1/../../x") is None
+    assert [file.name for file in path.parent.iterdir()] == [path.name]
+
+
+def test_a_clip_that_needs_a_model_plays(tmp_path: Path, samples: Path) -> None:
+    path = tmp_path / "trained.mocapdb"
+    clip = mp.read(samples / AMC)
+    model: Model = mp.train([clip], "exact")
+    with mp.open_library(path, "a") as library:
+        number = library.add(clip, "trained", model=model).id
+    with ServedLibrary(path) as served_library:
+        answer = served_library.answer(f"/clips/{number}")
+        assert answer is not None
+        assert mp.load(answer.content).values.tobytes() == clip.values.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "told"),
+    [
+        (["none.mocapdb"], 1, "No such file"),
+        (["bad.mocapdb"], 1, "not a database"),
+        (["bad.mocapdb", "other.bvh"], 2, "alone"),
+        (["bad.mocapdb", "--export", "page.html"], 2, "--export"),
+    ],
+)
+def test_what_cannot_be_viewed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[str], code: int, told: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("bad.mocapdb").write_bytes(b"no database" * 100)
+    done = CliRunner().invoke(app, ["view", "--no-browser", *words])
+    assert done.exit_code == code
+    assert told in done.output
+    assert not Path("page.html").exists()
