@@ -32,6 +32,16 @@ if TYPE_CHECKING:
     from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton, Stream
     from mocapress.motion.convert import to_amc_clip, to_bvh_clip
     from mocapress.motion.kinematics import positions, rotations
+    from mocapress.motion.markers import (
+        Event,
+        ForcePlate,
+        Markers,
+        Segments,
+        events,
+        force_plates,
+        markers,
+        segments,
+    )
     from mocapress.storage import ExistsError
 
 __all__ = [
@@ -39,16 +49,20 @@ __all__ = [
     "Clip",
     "Column",
     "CorruptError",
+    "Event",
     "ExistsError",
+    "ForcePlate",
     "FormatError",
     "Joint",
     "Library",
+    "Markers",
     "MissingModelError",
     "MocapressError",
     "Model",
     "MotionWarning",
     "NumberFormat",
     "ParameterError",
+    "Segments",
     "Skeleton",
     "StoredClip",
     "Stream",
@@ -58,13 +72,17 @@ __all__ = [
     "codec",
     "compress",
     "decompress",
+    "events",
+    "force_plates",
     "load",
     "load_model",
+    "markers",
     "open_library",
     "positions",
     "read",
     "rotations",
     "save_model",
+    "segments",
     "to_amc_clip",
     "to_bvh_clip",
     "to_json",
@@ -87,6 +105,19 @@ _LAZY = {
         ("Clip", "Column", "Joint", "NumberFormat", "Skeleton", "Stream"), "mocapress.motion"
     ),
     **dict.fromkeys(("positions", "rotations"), "mocapress.motion.kinematics"),
+    **dict.fromkeys(
+        (
+            "Event",
+            "ForcePlate",
+            "Markers",
+            "Segments",
+            "events",
+            "force_plates",
+            "markers",
+            "segments",
+        ),
+        "mocapress.motion.markers",
+    ),
     **dict.fromkeys(("Library", "StoredClip", "open_library"), "mocapress.library"),
     **dict.fromkeys(("load_model", "save_model", "train"), "mocapress.models"),
 }

@@ -50,7 +50,7 @@ def convert(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Convert between AMC with ASF and BVH; joint positions are kept, nothing is rescaled."""
+    """Convert between AMC, BVH, C3D and TRC, or write CSV, NPZ or Parquet; nothing is rescaled."""
     from mocapress import api
     from mocapress.cli.batch import STREAM, find, run
     from mocapress.cli.models import open_models, places_for
@@ -103,10 +103,10 @@ def convert(
 
 def _format(to: str | None, output: str | None) -> "Format":
     from mocapress.cli.batch import usage
-    from mocapress.formats import by_name, writable
+    from mocapress.formats import for_writing, writable
 
     known = [of for of in writable() if to is None or of.id == to]
-    named = by_name(output) if output else None
+    named = for_writing(output) if output else None
     found = (known[0] if known else None) if to else named
     if found is None or found not in known:
         ids = ", ".join(of.id for of in writable())
@@ -116,18 +116,11 @@ def _format(to: str | None, output: str | None) -> "Format":
 
 def _read(source: "Source", asf: Path | None, models: "Sequence[Place]", *, strict: bool) -> "Clip":
     from mocapress import api
-    from mocapress.errors import UnsupportedError
     from mocapress.source import MCZ
 
     if source.kind == MCZ:
-        clip = api.load_source(source, asf_path=asf, models=models, strict=strict)
-    else:
-        clip = api.read_source(source, asf, strict=strict)
-    if clip.skeleton is None:
-        raise UnsupportedError(
-            "no skeleton", file=source.name or None, expected="one beside it, or --asf"
-        )
-    return clip
+        return api.load_source(source, asf_path=asf, models=models, strict=strict)
+    return api.read_source(source, asf, strict=strict)
 
 
 def _keep_skeleton(job: "Job", source: "Source") -> None:
