@@ -1,9 +1,11 @@
 """``mocapress bench lossless``: every clip, with every lossless codec and tool."""
 
 import hashlib
+import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter
 from typing import Any, TypeVar
@@ -28,6 +30,20 @@ Row = dict[str, Any]
 T = TypeVar("T")
 
 
+@contextmanager
+def _on_one_processor() -> Iterator[None]:
+    if not hasattr(os, "sched_setaffinity"):
+        yield
+        return
+    usual = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(usual)})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, usual)
+
+
+@_on_one_processor()
 def measure(
     paths: Iterable[Path],
     root: Path,
@@ -45,7 +61,8 @@ def measure(
     ``compressed_bytes`` counts: the ``file``, or only its ``values``, without the text around
     them. A codec's file is as ``compress`` makes it: a small one may be that of a general-purpose
     compressor, while the times are still the codec's. ``model_bytes`` is the size of a model's
-    file, counted once for all clips that share it.
+    file, counted once for all clips that share it. Where the system can hold a process to one
+    processor, everything runs on one.
     """
     chosen, missing = contenders(only)
     notes = [f"not installed: {name}" for name in missing]
