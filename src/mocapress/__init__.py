@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     from mocapress.library import Library, StoredClip, open_library
     from mocapress.models import load_model, save_model, train
     from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton, Stream
+    from mocapress.motion.comparing import Difference, compare
     from mocapress.motion.convert import to_amc_clip, to_bvh_clip
+    from mocapress.motion.editing import concat, mirror, resample, retime
     from mocapress.motion.kinematics import positions, rotations
     from mocapress.storage import ExistsError
 
@@ -39,6 +41,7 @@ __all__ = [
     "Clip",
     "Column",
     "CorruptError",
+    "Difference",
     "ExistsError",
     "FormatError",
     "Joint",
@@ -56,13 +59,18 @@ __all__ = [
     "VerificationError",
     "__version__",
     "codec",
+    "compare",
     "compress",
+    "concat",
     "decompress",
     "load",
     "load_model",
+    "mirror",
     "open_library",
     "positions",
     "read",
+    "resample",
+    "retime",
     "rotations",
     "save_model",
     "to_amc_clip",
@@ -86,6 +94,8 @@ _LAZY = {
     **dict.fromkeys(
         ("Clip", "Column", "Joint", "NumberFormat", "Skeleton", "Stream"), "mocapress.motion"
     ),
+    **dict.fromkeys(("Difference", "compare"), "mocapress.motion.comparing"),
+    **dict.fromkeys(("concat", "mirror", "resample", "retime"), "mocapress.motion.editing"),
     **dict.fromkeys(("positions", "rotations"), "mocapress.motion.kinematics"),
     **dict.fromkeys(("Library", "StoredClip", "open_library"), "mocapress.library"),
     **dict.fromkeys(("load_model", "save_model", "train"), "mocapress.models"),

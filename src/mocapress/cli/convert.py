@@ -115,14 +115,10 @@ def _format(to: str | None, output: str | None) -> "Format":
 
 
 def _read(source: "Source", asf: Path | None, models: "Sequence[Place]", *, strict: bool) -> "Clip":
-    from mocapress import api
+    from mocapress.cli.reading import read_clip
     from mocapress.errors import UnsupportedError
-    from mocapress.source import MCZ
 
-    if source.kind == MCZ:
-        clip = api.load_source(source, asf_path=asf, models=models, strict=strict)
-    else:
-        clip = api.read_source(source, asf, strict=strict)
+    clip = read_clip(source, asf, models, strict=strict)
     if clip.skeleton is None:
         raise UnsupportedError(
             "no skeleton", file=source.name or None, expected="one beside it, or --asf"

@@ -27,8 +27,8 @@ from mocapress.formats.contract import Format, Split
 from mocapress.formats.layout import NO_ROWS
 from mocapress.formats.problems import EXTRA_ROWS, MISSING_ROWS, Problem
 from mocapress.motion import Clip, Skeleton, Stream
-from mocapress.motion.clip import FrameTime
 from mocapress.motion.columns import numbered_columns
+from mocapress.motion.frame_time import FrameTime
 from mocapress.records import Reader, Writer
 
 _INTEL, _DEC, _MIPS = 84, 85, 86

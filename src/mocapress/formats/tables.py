@@ -24,8 +24,8 @@ from mocapress.formats.table_layout import (
     split_table,
 )
 from mocapress.motion import Clip, Column, Skeleton, Stream
-from mocapress.motion.clip import FrameTime
 from mocapress.motion.columns import numbered_columns
+from mocapress.motion.frame_time import FrameTime
 
 CSV = "csv"
 """Id of the format."""
