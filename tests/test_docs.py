@@ -1,5 +1,6 @@
 """What the README shows works as shown."""
 
+import doctest
 import re
 import shutil
 from pathlib import Path
@@ -50,6 +51,13 @@ def test_the_guide_to_libraries_runs(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.chdir(tmp_path)
     guide = (ROOT / "docs/guide/library.md").read_text()
     exec("\n".join(re.findall(r"```python\n(.*?)```", guide, re.DOTALL)), {})
+
+
+def test_the_guide_to_markers_says_what_comes_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    found = doctest.testfile(str(ROOT / "docs/guide/markers.md"), module_relative=False)
+    assert found.attempted > 2
+    assert not found.failed
 
 
 def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -34,6 +34,16 @@ if TYPE_CHECKING:
     from mocapress.motion.convert import to_amc_clip, to_bvh_clip
     from mocapress.motion.editing import concat, mirror, resample, retime
     from mocapress.motion.kinematics import positions, rotations
+    from mocapress.motion.markers import (
+        Event,
+        ForcePlate,
+        Markers,
+        Segments,
+        events,
+        force_plates,
+        markers,
+        segments,
+    )
     from mocapress.storage import ExistsError
 
 __all__ = [
@@ -42,16 +52,20 @@ __all__ = [
     "Column",
     "CorruptError",
     "Difference",
+    "Event",
     "ExistsError",
+    "ForcePlate",
     "FormatError",
     "Joint",
     "Library",
+    "Markers",
     "MissingModelError",
     "MocapressError",
     "Model",
     "MotionWarning",
     "NumberFormat",
     "ParameterError",
+    "Segments",
     "Skeleton",
     "StoredClip",
     "Stream",
@@ -63,8 +77,11 @@ __all__ = [
     "compress",
     "concat",
     "decompress",
+    "events",
+    "force_plates",
     "load",
     "load_model",
+    "markers",
     "mirror",
     "open_library",
     "positions",
@@ -73,6 +90,7 @@ __all__ = [
     "retime",
     "rotations",
     "save_model",
+    "segments",
     "to_amc_clip",
     "to_bvh_clip",
     "to_json",
@@ -97,6 +115,19 @@ _LAZY = {
     **dict.fromkeys(("Difference", "compare"), "mocapress.motion.comparing"),
     **dict.fromkeys(("concat", "mirror", "resample", "retime"), "mocapress.motion.editing"),
     **dict.fromkeys(("positions", "rotations"), "mocapress.motion.kinematics"),
+    **dict.fromkeys(
+        (
+            "Event",
+            "ForcePlate",
+            "Markers",
+            "Segments",
+            "events",
+            "force_plates",
+            "markers",
+            "segments",
+        ),
+        "mocapress.motion.markers",
+    ),
     **dict.fromkeys(("Library", "StoredClip", "open_library"), "mocapress.library"),
     **dict.fromkeys(("load_model", "save_model", "train"), "mocapress.models"),
 }

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from running import mocapress, process
 
@@ -429,3 +430,26 @@ def test_a_path_that_cannot_be_looked_at_is_no_defect(walk: Path, words: tuple[s
     (line,) = done.stderr.decode().splitlines()
     assert line.startswith("mocapress: ")
     assert line.endswith(f" {paths['LONG']}: File name too long")
+
+
+def test_info_tells_vendor_rates_and_gaps_of_markers() -> None:
+    for kind in ("c3d", "trc"):
+        (told,) = json.loads(mocapress("info", "--json", SAMPLES / f"markers.{kind}").stdout)
+        assert told["markers"] == 16
+        assert (told["unit"], told["rate"]) == ("mm", 120)
+        assert told["gaps"] == "0.625 % of the points, 1 markers with gaps"
+    (told,) = json.loads(mocapress("info", "--json", SAMPLES / "markers.c3d").stdout)
+    assert told["encoding"] == "Intel, floats"
+
+
+def test_markers_are_converted_to_every_kind_and_back(tmp_path: Path) -> None:
+    for kind in ("trc", "csv", "npz", "c3d"):
+        done = mocapress("convert", SAMPLES / "markers.c3d", "-o", tmp_path / f"a.{kind}")
+        assert done.exit_code == 0, done.stderr
+        assert (tmp_path / f"a.{kind}").exists()
+    mocapress("convert", tmp_path / "a.trc", "-o", tmp_path / "b.c3d")
+    back = mp.read(tmp_path / "b.c3d").values
+    assert np.array_equal(back, mp.read(SAMPLES / "markers.c3d").values, equal_nan=True)
+    refused = mocapress("convert", SAMPLES / "markers.c3d", "-o", tmp_path / "a.bvh")
+    assert refused.exit_code == 1
+    assert "no skeleton" in refused.stderr

@@ -13,14 +13,8 @@ import numpy as np
 
 from mocapress import _core
 from mocapress.motion import Clip, Stream
+from mocapress.motion.markers import ANALOG, CAMERAS, POINTS, RESIDUALS
 
-POINTS, RESIDUALS, CAMERAS, ANALOG, ROTATIONS = (
-    "points",
-    "residuals",
-    "cameras",
-    "analog",
-    "rotations",
-)
 _DEC, _MIPS = 85, 86
 _NAMES = {84: "Intel", _DEC: "DEC", _MIPS: "MIPS"}
 _TEXT, _BYTE, _INTEGER, _REAL = -1, 1, 2, 4
@@ -106,6 +100,11 @@ class Parameters:
         return None
 
     @property
+    def point_scale(self) -> float:
+        """What whole numbers of coordinates and residuals are multiplied by."""
+        return abs(self.number("POINT", "SCALE", self.of_header(12, _REAL))) or 1.0
+
+    @property
     def first_frame(self) -> int:
         """The number of the first frame, mostly 1."""
         field = self.numbers("TRIAL", "ACTUAL_START_FIELD")
@@ -118,7 +117,8 @@ def described(head: bytes, clip: Clip) -> Clip:
     """Give a clip whose streams have the names, units and scales of the file's parameters.
 
     Coordinates and analog values of files of whole numbers are multiplied by their scales, so that
-    they are in their units; residuals are lengths. Points that are missing are NaN.
+    they are in their units; residuals and cameras stay as they are, ``point_scale`` in the metadata
+    makes lengths of residuals. Points that are missing are NaN.
 
     Parameters
     ----------
@@ -134,11 +134,10 @@ def described(head: bytes, clip: Clip) -> Clip:
 
 
 def _described(name: str, stream: Stream, told: Parameters) -> Stream:
-    scale = abs(told.number("POINT", "SCALE", told.of_header(12, _REAL))) or 1.0
     unit = "".join(told.texts("POINT", "UNITS")[:1])
     labels = told.texts("POINT", "LABELS")
     if name == POINTS:
-        values = stream.values if told.floats else stream.values * scale
+        values = stream.values if told.floats else stream.values * told.point_scale
         return _named(replace(stream, values=values), labels, [unit])
     if name == RESIDUALS:
         # -1 says that the point is not valid.
@@ -190,6 +189,7 @@ def _facts(told: Parameters) -> dict[str, str]:
     facts = {
         "encoding": f"{_NAMES[told.processor]}, {'floats' if told.floats else 'whole numbers'}",
         "first_frame": str(told.first_frame),
+        "point_scale": repr(told.point_scale),
     }
     if makers:
         facts["vendor"] = ", ".join(dict.fromkeys(filter(None, makers)))
