@@ -69,7 +69,7 @@ def test_half_the_rate_is_every_second_frame(name: str, request: pytest.FixtureR
 @pytest.mark.parametrize("name", ["walk", "bvh"])
 def test_frames_between_lie_between(name: str, request: pytest.FixtureRequest) -> None:
     clip = request.getfixturevalue(name)[:60]
-    finer = mp.resample(clip, 2 * clip.fps)
+    finer = mp.resample(clip, 2 * (clip.fps or 0))
     assert np.array_equal(finer.values[::2], clip.values)
     turns = mp.rotations(finer)
     cosine = np.abs((turns[:-1] * turns[1:]).sum(axis=2))
@@ -86,7 +86,7 @@ def test_a_rotation_goes_the_short_way_round(bvh: mp.Clip) -> None:
     values = bvh.values[:2].copy()
     values[:, c] = 179, -179
     clip = bvh[:2].with_values(values)
-    middle = mp.resample(clip, 2 * clip.fps).values[1, c]
+    middle = mp.resample(clip, 2 * (clip.fps or 0)).values[1, c]
     assert abs(middle) == pytest.approx(180, abs=1)
 
 

@@ -84,7 +84,8 @@ def _parts(word: str) -> list[str]:
     """Split a bundle of short options: ``-9kofile`` is ``--level=9``, ``-k`` and ``-ofile``."""
     if not word.startswith("-") or word == "-":
         return [word]
-    parts, at = [], 1
+    parts: list[str] = []
+    at = 1
     while at < len(word):
         if word[at] in _WITH_VALUE:
             return [*parts, f"-{word[at:]}"]

@@ -159,7 +159,7 @@ class Clip:
         if self.frame_time is None:
             msg = "the frame time is not known; mp.retime(clip, fps) states it"
             raise ValueError(msg)
-        return np.arange(self.frames) * float(self.frame_time)
+        return np.arange(self.frames, dtype=np.float64) * np.float64(self.frame_time)
 
     def __len__(self) -> int:
         """Give the number of frames of the first stream."""

@@ -102,7 +102,7 @@ def resample(clip: Clip, fps: float) -> Clip:
         raise UnsupportedError("the sampling rate of the clip is not known")
     step = float(1 / Fraction(str(fps)) / Fraction(clip.frame_time))
     count = int((clip.frames - 1) / step + _WHOLE) + 1 if clip.frames else 0
-    at = np.arange(count) * step
+    at: Array = np.arange(count, dtype=np.float64) * np.float64(step)
     whole = np.abs(at - np.round(at)) < _WHOLE
     at[whole] = np.round(at[whole])
     before = at.astype(np.intp)
