@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.errors import UnsupportedError
-from mocapress.motion.clip import Clip, FrameTime, Stream
+from mocapress.motion.clip import Clip, Stream
+from mocapress.motion.frame_time import FrameTime
 
 POINTS, RESIDUALS, CAMERAS, ANALOG, ROTATIONS = (
     "points",
