@@ -81,6 +81,25 @@ def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     assert Path("walk.amc").read_bytes() == Path("original.amc").read_bytes()
 
 
+def test_the_guide_to_the_command_line_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "clips").mkdir()
+    shutil.copy(ROOT / "samples/freebvh.bvh", tmp_path / "clips")
+    for suffix in ("amc", "asf"):
+        shutil.copy(ROOT / f"samples/cmu_01_01.{suffix}", tmp_path / f"walk.{suffix}")
+    monkeypatch.chdir(tmp_path)
+    guide = (ROOT / "docs/guide/commands.md").read_text()
+    commands = re.findall(r"^\$ mocapress (.*?)(?:  +#.*)?$", guide, re.MULTILINE)
+    assert len(commands) > 8
+    CliRunner().invoke(app, ["-1", "walk.amc"])
+    for command in commands:
+        result = CliRunner().invoke(app, command.split())
+        assert result.exit_code == 0, (command, result.output)
+    restored = tmp_path / "back/freebvh.bvh"
+    assert restored.read_bytes() == (ROOT / "samples/freebvh.bvh").read_bytes()
+
+
 def test_every_codec_is_in_the_readme_and_the_format() -> None:
     described = (ROOT / "docs/format.md").read_text()
     for name in codecs.codec_ids():

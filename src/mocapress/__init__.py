@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     from mocapress.library import Library, StoredClip, open_library
     from mocapress.models import load_model, save_model, train
     from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton, Stream
+    from mocapress.motion.comparing import Difference, compare
     from mocapress.motion.convert import to_amc_clip, to_bvh_clip
+    from mocapress.motion.editing import concat, mirror, resample, retime
     from mocapress.motion.kinematics import positions, rotations
     from mocapress.motion.markers import (
         Event,
@@ -49,6 +51,7 @@ __all__ = [
     "Clip",
     "Column",
     "CorruptError",
+    "Difference",
     "Event",
     "ExistsError",
     "ForcePlate",
@@ -70,16 +73,21 @@ __all__ = [
     "VerificationError",
     "__version__",
     "codec",
+    "compare",
     "compress",
+    "concat",
     "decompress",
     "events",
     "force_plates",
     "load",
     "load_model",
     "markers",
+    "mirror",
     "open_library",
     "positions",
     "read",
+    "resample",
+    "retime",
     "rotations",
     "save_model",
     "segments",
@@ -104,6 +112,8 @@ _LAZY = {
     **dict.fromkeys(
         ("Clip", "Column", "Joint", "NumberFormat", "Skeleton", "Stream"), "mocapress.motion"
     ),
+    **dict.fromkeys(("Difference", "compare"), "mocapress.motion.comparing"),
+    **dict.fromkeys(("concat", "mirror", "resample", "retime"), "mocapress.motion.editing"),
     **dict.fromkeys(("positions", "rotations"), "mocapress.motion.kinematics"),
     **dict.fromkeys(
         (

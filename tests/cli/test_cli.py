@@ -46,7 +46,7 @@ def test_a_name_without_a_suffix_gets_that_of_the_original(walk: Path) -> None:
     walk.with_name("junk.mcz").write_bytes(b"no such file")
     result = mocapress("decompress", walk.with_name("junk.mcz"))
     assert result.exit_code == 1
-    assert "not a .mcz file" in result.stderr
+    assert "not compressed by mocapress" in result.stderr
 
 
 def test_nothing_is_overwritten_without_force(walk: Path) -> None:
@@ -103,14 +103,14 @@ def test_json_is_for_machines(walk: Path, tmp_path: Path) -> None:
         (["compress", "walk.amc", "--codec", "app", "--level", "3"], 2, "app has no levels"),
         (["compress", "walk.amc", "--level", "10"], 2, "10 is not in the range 1<=x<=9"),
         (["compress", "walk.amc", "--model", "no.mcm"], 1, "no.mcm: No such file"),
-        (["compress", "walk.amc", "--model", "walk.amc"], 1, "walk.amc, byte 0: not a .mcm file"),
+        (["compress", "walk.amc", "--model", "walk.amc"], 1, "walk.amc: not a model of mocapress"),
         (["compress", "walk.amc", "--codec", "app", "--model", "v1.mcm"], 2, "takes no model"),
         (["train", "walk.amc", "-o", "x.mcm", "--codec", "app"], 2, "app takes no model"),
         (["train", "walk.amc"], 2, "Missing option '-o'"),
         (["info", "walk.amc", "--model", "no.mcm"], 1, "no.mcm: No such file"),
         (["decompress", "walk.amc"], 2, "-o gives it"),
-        (["decompress", "walk.amc", "-o", "x"], 1, "not a .mcz file"),
-        (["verify", "walk.amc"], 3, "not a .mcz file"),
+        (["decompress", "walk.amc", "-o", "x"], 1, "not compressed by mocapress"),
+        (["verify", "walk.amc"], 3, "not compressed by mocapress"),
         (["info", "missing"], 1, "No such file"),
         (["convert", "walk.amc", "-o", "x.bvh"], 1, "no skeleton"),
         (["compress", "walk.amc", "--codec", "app", "-o", "x.diffma.json"], 2, "expected diffma"),
@@ -385,7 +385,10 @@ def test_shells_can_complete(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("_MOCAPRESS_COMPLETE", "complete_bash")
     monkeypatch.setenv("COMP_WORDS", "mocapress co")
     monkeypatch.setenv("COMP_CWORD", "1")
-    assert process().stdout.split() == [b"compress", b"convert"]
+    assert set(process().stdout.split()) == {b"compress", b"convert", b"compare", b"codecs"}
+    monkeypatch.setenv("COMP_WORDS", "mocapress compress --codec ex")
+    monkeypatch.setenv("COMP_CWORD", "3")
+    assert process().stdout.split() == [b"exact"]
 
 
 @pytest.mark.parametrize("ending", ["mcz", "diffma.json"])

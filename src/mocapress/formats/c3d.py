@@ -19,8 +19,8 @@ from mocapress.formats.contract import Format, Split
 from mocapress.formats.layout import NO_ROWS
 from mocapress.formats.problems import EXTRA_ROWS, MISSING_ROWS, Problem
 from mocapress.motion import Clip, Skeleton, Stream
-from mocapress.motion.clip import FrameTime
 from mocapress.motion.columns import numbered_columns
+from mocapress.motion.frame_time import FrameTime
 from mocapress.motion.markers import ANALOG, CAMERAS, POINTS, RESIDUALS, ROTATIONS, WHOLE_WORD
 from mocapress.records import Reader, Writer
 

@@ -28,8 +28,8 @@ from mocapress.formats.table_layout import (
 )
 from mocapress.formats.table_writing import with_frames, write_csv
 from mocapress.motion import Clip, Column, Skeleton, Stream
-from mocapress.motion.clip import FrameTime
 from mocapress.motion.columns import distinct, numbered_columns
+from mocapress.motion.frame_time import FrameTime
 
 CSV = "csv"
 """Id of the format."""

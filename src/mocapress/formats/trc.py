@@ -19,8 +19,8 @@ from mocapress.formats.table_writing import blank, counted, with_frames
 from mocapress.formats.tables import TABLE, full_values, header_lines
 from mocapress.formats.tables import split as split_table
 from mocapress.motion import Clip, Column, Skeleton, Stream
-from mocapress.motion.clip import short_decimal
 from mocapress.motion.columns import distinct
+from mocapress.motion.frame_time import short_decimal
 from mocapress.motion.markers import POINTS
 
 Values = NDArray[np.float64]

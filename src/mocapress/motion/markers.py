@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.errors import UnsupportedError
-from mocapress.motion.clip import Clip, FrameTime, Stream
+from mocapress.motion.clip import Clip, Stream
+from mocapress.motion.frame_time import FrameTime
 
 POINTS, RESIDUALS, CAMERAS, ANALOG, ROTATIONS = (
     "points",
@@ -34,8 +35,8 @@ class Markers:
     positions: Array
     """(F, P, 3), in ``unit``; NaN where a marker is missing."""
     valid: NDArray[np.bool_]
-    """(F, P): whether a marker was seen there. A position can be stored though it is not valid; 0, 0,
-    0 never is: many programs write it for a marker that is missing."""
+    """(F, P): whether a marker was seen. A position can be stored though it is not valid; that
+    of 0, 0, 0 never is: many programs write it for a marker that is missing."""
     residuals: Array | None
     """(F, P), in ``unit``; NaN where a marker is not valid. None where the file has none."""
     cameras: NDArray[np.int64] | None
