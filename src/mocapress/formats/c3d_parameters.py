@@ -13,6 +13,7 @@ import numpy as np
 
 from mocapress import _core
 from mocapress.motion import Clip, Stream
+from mocapress.motion.columns import distinct
 from mocapress.motion.markers import ANALOG, CAMERAS, POINTS, RESIDUALS
 
 _DEC, _MIPS = 85, 86
@@ -167,15 +168,12 @@ def _analog_scales(told: Parameters, channels: int) -> tuple[np.ndarray, np.ndar
 def _named(stream: Stream, labels: Sequence[str], units: Sequence[str]) -> Stream:
     """Give the columns the names of their groups, and units; a name that is there again, ``#2``."""
     columns = []
-    seen: dict[str, int] = {}
-    names: list[str] = []
+    groups = dict.fromkeys(column.name.partition(".")[0] for column in stream.columns)
+    told = dict(zip(groups, labels, strict=False))
+    names = distinct(told.get(group) or f"*{group}" for group in groups)
     for column in stream.columns:
         group, _, kind = column.name.partition(".")
         place = int(group) - 1
-        if place == len(names):
-            label = labels[place] if place < len(labels) and labels[place] else f"*{group}"
-            count = seen[label] = seen.get(label, 0) + 1
-            names.append(label if count == 1 else f"{label}#{count}")
         unit = units[place] if place < len(units) else units[-1] if len(units) == 1 else ""
         alone = kind in ("residual", "cameras", "analog")
         name = names[place] if alone else f"{names[place]}.{kind}"

@@ -28,7 +28,7 @@ from mocapress.formats.table_layout import (
 )
 from mocapress.formats.table_writing import with_frames, write_csv
 from mocapress.motion import Clip, Column, Skeleton, Stream
-from mocapress.motion.columns import numbered_columns
+from mocapress.motion.columns import distinct, numbered_columns
 from mocapress.motion.frame_time import FrameTime
 
 CSV = "csv"
@@ -157,12 +157,7 @@ def described(layout: Any, clip: Clip, near: Near) -> Clip:
 
 def named_columns(names: Sequence[str]) -> tuple[Column, ...]:
     """Give columns of names; one that is there again is ``name#2``."""
-    seen: dict[str, int] = {}
-    columns = []
-    for place, name in enumerate(names):
-        count = seen[name] = seen.get(name, 0) + 1
-        columns.append(Column(name if count == 1 else f"{name}#{count}", place, "v"))
-    return tuple(columns)
+    return tuple(Column(name, place, "v") for place, name in enumerate(distinct(names)))
 
 
 def _recognised(head: bytes) -> bool:

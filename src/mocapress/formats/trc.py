@@ -19,6 +19,7 @@ from mocapress.formats.table_writing import blank, counted, with_frames
 from mocapress.formats.tables import TABLE, full_values, header_lines
 from mocapress.formats.tables import split as split_table
 from mocapress.motion import Clip, Column, Skeleton, Stream
+from mocapress.motion.columns import distinct
 from mocapress.motion.frame_time import short_decimal
 from mocapress.motion.markers import POINTS
 
@@ -78,7 +79,7 @@ def described(layout: Any, clip: Clip, _: Near) -> Clip:
     values = full_values(layout, stream.values)
     lines = header_lines(layout)
     labels = next((line for line in reversed(lines) if line[0].startswith("Frame")), [])
-    names = [name for name in labels[_BEFORE:] if name]
+    names = distinct(name for name in labels[_BEFORE:] if name)
     places = [place for place in sorted(values) if place >= _BEFORE]
     count = min(len(names) or len(places) // 3, len(places) // 3)
     if not count:

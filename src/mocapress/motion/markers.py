@@ -35,7 +35,8 @@ class Markers:
     positions: Array
     """(F, P, 3), in ``unit``; NaN where a marker is missing."""
     valid: NDArray[np.bool_]
-    """(F, P): whether a marker was seen there. A position can be stored though it is not valid."""
+    """(F, P): whether a marker was seen. A position can be stored though it is not valid; that
+    of 0, 0, 0 never is: many programs write it for a marker that is missing."""
     residuals: Array | None
     """(F, P), in ``unit``; NaN where a marker is not valid. None where the file has none."""
     cameras: NDArray[np.int64] | None
@@ -126,7 +127,8 @@ def markers(clip: Clip) -> Markers:
     if not kinds or kinds != ["x", "y", "z"] * (len(kinds) // 3):
         raise UnsupportedError("the points of this clip are not x, y and z of markers")
     positions = points.values.reshape(points.frames, points.channels // 3, 3)
-    valid = np.asarray(~np.isnan(positions).any(axis=2))
+    seen = ~np.isnan(positions).any(axis=2) & (positions != 0).any(axis=2)
+    valid = np.asarray(seen)
     residuals, cameras = _fourth_words(clip, valid)
     for array in (valid, residuals, cameras):
         if array is not None:
