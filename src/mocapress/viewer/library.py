@@ -8,16 +8,12 @@ from http import HTTPStatus
 from pathlib import Path
 from types import TracebackType
 
-from mocapress import api
 from mocapress.api.loading import load_opened
-from mocapress.codecs.exact import Exact
 from mocapress.errors import MocapressError, UnsupportedError
 from mocapress.library import open_library
 from mocapress.library.clips import StoredClip
 from mocapress.library.opened import OpenedClip
 from mocapress.library.reading import Reading
-from mocapress.motion import Clip
-from mocapress.motion.clip import MOTION
 from mocapress.viewer import embed
 from mocapress.viewer.server import Answer
 
@@ -82,7 +78,7 @@ class ServedLibrary(AbstractContextManager["ServedLibrary"]):
 
 
 def playable(library: Reading, number: int, *, strict: bool = True) -> bytes:
-    """Give the first stream of a clip as a ``.mcz`` that the page can decode.
+    """Give what is played of a clip as a ``.mcz`` that the page can decode.
 
     Chunks stay as they are where the page has their decoder and they hold all frames.
 
@@ -102,8 +98,7 @@ def playable(library: Reading, number: int, *, strict: bool = True) -> bytes:
         clip = load_opened(opened, strict=strict)
     if not clip.frames:
         raise UnsupportedError("no frames to be played", file=opened.facts.name)
-    main = Clip({MOTION: clip.main}, clip.skeleton)
-    return api.compress(main, Exact(level=embed.FAST))
+    return embed.coded_anew(clip, level=embed.FAST)
 
 
 def _first_of(opened: OpenedClip) -> slice:
