@@ -141,6 +141,9 @@ def test_a_damaged_clip_is_told_of(browser: Browser, path: Path) -> None:
         assert f"bank/{BVH}" in visit.text(".notice")
         assert "chunk of frames 0 to 454" in visit.text(".notice")
         plays(visit, AMC, 2751)  # the others play
+        (logged,) = visit.logged  # the browser's own remark
+        assert "409" in logged
+        visit.logged.clear()
 
 
 def test_the_server_gives_what_the_library_has(path: Path, samples: Path) -> None:
