@@ -16,7 +16,7 @@ from mocapress.cli.app import app
 from mocapress.codecs import Model
 from mocapress.viewer import page
 from mocapress.viewer.library import ServedLibrary
-from mocapress.viewer.server import PageServer
+from mocapress.viewer.server import PageServer, first_of, nothing
 
 AMC, ASF, BVH = "cmu_01_01.amc", "cmu_01_01.asf", "mocapbank.bvh"
 
@@ -41,30 +41,41 @@ def path(tmp_path: Path, samples: Path) -> Path:
 
 
 @contextmanager
-def served(browser: Browser, path: Path, size: tuple[int, int] = LAPTOP) -> Iterator[Visit]:
-    document = page.document([], path.name, served=True, library=path.name)
-    with (
-        ServedLibrary(path) as library,
-        PageServer(document, page.policy(served=True), 0, library.answer) as server,
-    ):
+def visited(
+    browser: Browser, library: ServedLibrary | None, size: tuple[int, int]
+) -> Iterator[Visit]:
+    name = library and library.name
+    document = page.document([], served=True, library=name)
+    more = first_of(library.answer if library else nothing, page.lent)
+    with PageServer(document, page.policy(served=True), 0, more) as server:
         thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
         thread.start()
         context = browser.new_context(viewport={"width": size[0], "height": size[1]})
         try:
             visit = Visit(context.new_page())
             visit.page.goto(server.url)
-            visit.until("document.querySelectorAll('.clips [role=option]').length > 0")
             yield visit
         finally:
             context.close()
             server.shutdown()
             thread.join()
         assert visit.logged == []
-        assert {url.removeprefix(server.url).split("/")[0] for url in visit.asked} <= {
-            "",
-            "catalogue",
-            "clips",
-        }
+        visit.asked = [url.removeprefix(server.url) for url in visit.asked]
+
+
+@contextmanager
+def served(browser: Browser, path: Path, size: tuple[int, int] = LAPTOP) -> Iterator[Visit]:
+    with ServedLibrary(path) as library, visited(browser, library, size) as visit:
+        visit.until("document.querySelectorAll('.clips [role=option]').length > 0")
+        yield visit
+    assert {url.split("/")[0] for url in visit.asked} <= {"", "catalogue", "clips"}
+
+
+@contextmanager
+def empty(browser: Browser) -> Iterator[Visit]:
+    with visited(browser, None, LAPTOP) as visit:
+        visit.until("document.body.classList.contains('empty')")
+        yield visit
 
 
 def listed(visit: Visit) -> list[str]:
@@ -144,6 +155,61 @@ def test_a_damaged_clip_is_told_of(browser: Browser, path: Path) -> None:
         (logged,) = visit.logged  # the browser's own remark
         assert "409" in logged
         visit.logged.clear()
+
+
+def test_a_dropped_library_is_read_by_sqlite(browser: Browser, path: Path, samples: Path) -> None:
+    with mp.open_library(path, "a") as library:
+        library.add(samples / AMC, "copy.amc")
+        library.add(samples / "markers.c3d", "markers.c3d")
+    with empty(browser) as visit:
+        visit.drop(samples / BVH)
+        visit.until("document.querySelector('#frame').textContent.endsWith('/ 455')")
+        assert not any("sqlite" in url for url in visit.asked)
+        visit.drop(path)
+        visit.until("document.querySelectorAll('.clips [role=option]').length === 6")
+        assert listed(visit)[1:] == [f"bank/{BVH}", f"cmu/{AMC}", "copy.amc", "cut", "markers.c3d"]
+        visit.page.locator("#library [name=labels]").select_option("slow")
+        plays(visit, BVH, 455)
+        visit.page.locator("#library [name=labels]").select_option("")
+        plays(visit, f"cmu/{AMC}", 2751)
+        plays(visit, "copy.amc", 2751)  # all of it is in the other
+        plays(visit, "cut", 800)
+        visit.seek(0)
+        first = mp.read(samples / AMC).values[100, 0]
+        shown = float(visit.page.locator(".plot output").first.inner_text())
+        assert shown == pytest.approx(first, rel=1e-3)
+        visit.page.locator(".clips button", has_text="markers").click()
+        visit.until("document.querySelector('#frame').textContent.endsWith('/ 300')")
+        assert visit.page.locator(".notice").count() == 0
+    assert sum("sqlite" in url for url in visit.asked) == 2
+    assert not any(url.startswith(("clips", "catalogue")) for url in visit.asked)
+
+
+def test_broken_libraries_are_told_of(browser: Browser, path: Path, samples: Path) -> None:
+    data = path.read_bytes()
+    with empty(browser) as visit:
+        for name, broken in (
+            ("text.mocapdb", b"no database" * 500),
+            ("cut.mocapdb", data[:3000]),
+            ("empty.mocapdb", b""),
+            ("other.mocapdb", data[:68] + bytes(4) + data[72:]),
+        ):
+            visit.drop((name, broken))
+            visit.until(f"document.querySelector('.notice')?.textContent.startsWith('{name}')")
+        visit.drop(path)
+        visit.until("document.body.dataset.frame > 0")  # the page goes on
+
+
+def test_a_page_from_disk_cannot_read_a_library(
+    browser: Browser, path: Path, tmp_path: Path
+) -> None:
+    context = browser.new_context()
+    visit = Visit(context.new_page())
+    visit.open(page.document([]), tmp_path)
+    visit.drop(path)
+    visit.until("document.querySelector('.notice')?.textContent.includes('mocapress view')")
+    context.close()
+    assert visit.logged == []
 
 
 def test_the_server_gives_what_the_library_has(path: Path, samples: Path) -> None:

@@ -6,7 +6,8 @@ import { MczError } from "./error.js";
 import { readHead } from "./head.js";
 import { unpack } from "./packing.js";
 import { Record } from "./record.js";
-import { readSections, TAG } from "./sections.js";
+import { readSections, sectionsOf, TAG } from "./sections.js";
+import { joined } from "./xz.js";
 
 const MOST_UNPACKED = 2 ** 24;
 const DIGEST = 32; // bytes
@@ -44,6 +45,51 @@ export async function openMcz(bytes, assets) {
   const own = chunksOfStreams(chunks, streams);
   checkValues(streams, own, bytes.length);
   return { skeleton, streams, chunks: own, closed, original: found(TAG.file)?.content };
+}
+
+/**
+ * The file of a clip whose parts a library keeps apart: docs/format/library.md.
+ *
+ * @param {Object} parts the columns `name`, `file`, `format`, `size`, `sha256`, `problems` and `head`
+ *     of `clips`; `skeleton`, the record; `text`, packed; `sections` of `chunks`; each may be null
+ * @param {import("./assets.js").Assets} assets
+ * @returns {Promise<Mcz>} with the frames that the clip has in chunks of its own
+ * @throws {MczError} where it is damaged
+ */
+export async function mczOfParts(parts, assets) {
+  const unpacked = (bytes, what) =>
+    bytes ? unpack(new Record(bytes, what), MOST_UNPACKED, assets) : Uint8Array.of(0);
+  const [skeletonRecord, rest] = await Promise.all([
+    unpacked(parts.skeleton, "skeleton"),
+    unpacked(parts.head, "head"),
+  ]);
+  const { skeleton, streams } = readHead(together(skeletonRecord, rest));
+  const sections = parts.sections ?? new Uint8Array(0);
+  const chunks = chunksOfStreams(sectionsOf(sections).filter(isChunk).map(readChunk), streams);
+  checkValues(streams, chunks, sections.length);
+  return { skeleton, streams, chunks, closed: true, original: originalOf(parts) };
+}
+
+/** The section *file* as `layoutOf` reads it. */
+function originalOf({ name, file, format, size, sha256, problems, text }) {
+  if (!text) return undefined;
+  const named = (words) => {
+    const bytes = new TextEncoder().encode(words);
+    return together(integerOf(bytes.length), bytes);
+  };
+  const own = file ?? name.slice(name.lastIndexOf("/") + 1);
+  const described = [named(format ?? ""), named(own), integerOf(size), sha256];
+  return new Record(together(...described, problems ?? Uint8Array.of(0), text), "file");
+}
+
+function together(...pieces) {
+  return joined(pieces, pieces.reduce((sum, { length }) => sum + length, 0));
+}
+
+function integerOf(value) {
+  const bytes = [];
+  for (; value > 127; value = Math.floor(value / 128)) bytes.push((value % 128) | 128);
+  return Uint8Array.of(...bytes, value);
 }
 
 /**

@@ -39,6 +39,21 @@ export function readSections(bytes, magic = "\x89MCZ") {
   return { sections, closed: false };
 }
 
+/**
+ * Sections that stand one behind the other, without what makes them a file.
+ *
+ * @throws {MczError} where one is cut off or has a wrong checksum
+ */
+export function sectionsOf(bytes) {
+  const sections = [];
+  for (const record = new Record(bytes, "chunks"); record.left; ) {
+    const section = nextSection(record);
+    if (!section) throw record.fail("a section that is cut off, or has a wrong checksum");
+    sections.push(section);
+  }
+  return sections;
+}
+
 /** A section, or null where what is left is one that was cut off. */
 function nextSection(file) {
   const { bytes, at: begin } = file;

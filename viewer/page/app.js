@@ -8,6 +8,7 @@ import { LibraryPanel } from "./panels/library.js";
 import { Notices } from "./panels/notice.js";
 import { Timeline } from "./panels/timeline.js";
 import { message } from "./reading/files.js";
+import { DroppedLibrary, isLibrary } from "./reading/dropped_library.js";
 import { paint, stagesOf } from "./scene/staging.js";
 import { Viewport } from "./scene/viewport.js";
 import { axisName } from "./state/bearings.js";
@@ -48,7 +49,9 @@ export class App {
 
   /** Show files; of a file that is broken, a message says what is wrong with it. */
   async openFiles(files, how) {
-    if (await this.#read(how, (begun) => this.reader.files(files, begun))) this.player.play(true);
+    const dropped = files.find(isLibrary);
+    if (dropped) await this.openLibrary(new DroppedLibrary(dropped, this.reader));
+    else if (await this.#read(how, (begun) => this.reader.files(files, begun))) this.player.play(true);
   }
 
   /**
@@ -57,12 +60,15 @@ export class App {
    * @param {import("./reading/served.js").ServedLibrary} library
    */
   async openLibrary(library) {
+    document.body.classList.add("reading");
     const { clips, errors } = await library.catalogue();
+    document.body.classList.remove("reading");
+    this.notices.show(errors);
+    if (errors.length) return;
     this.library = library;
     this.libraryPanel.show(library.name, clips);
     this.at("show-library").hidden = false;
     this.#toggleLibrary(true);
-    this.notices.show(errors);
     if (clips.length && !isNarrow()) await this.#openStored(clips[0], "replace");
     else if (!this.lineup.takes.length) document.body.classList.add("empty");
   }

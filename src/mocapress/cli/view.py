@@ -52,6 +52,7 @@ def view(
     from mocapress.errors import MocapressError
     from mocapress.storage import check_targets, write_whole
     from mocapress.viewer import embed, page
+    from mocapress.viewer.server import nothing
 
     inputs = files or []
     if any(path.suffix.lower() == ".mocapdb" for path in inputs):
@@ -93,7 +94,7 @@ def view(
     if export:
         print(f"{export}: {len(document.encode())} bytes, {_exactness(stated)}")
     else:
-        _serve(document, port, browser=browser)
+        _serve(document, port, browser=browser, more=nothing)
 
 
 def _serve_library(
@@ -118,8 +119,7 @@ def _serve_library(
         usage("--export makes a page of clips, not of a library; `library extract` gives its clips")
     try:
         with ServedLibrary(library, strict=strict) as served:
-            name = library.name.encode(errors="surrogateescape").decode(errors="replace")
-            document = page.document([], name, served=True, library=name)
+            document = page.document([], served.name, served=True, library=served.name)
             _serve(document, port, browser=browser, more=served.answer)
     except (MocapressError, OSError) as error:
         if debug:
@@ -133,16 +133,16 @@ def _serve(
     port: int,
     *,
     browser: bool,
-    more: "Callable[[str], Answer | None] | None" = None,
+    more: "Callable[[str], Answer | None]",
 ) -> None:
     import webbrowser
 
     from mocapress.cli.batch import usage
     from mocapress.viewer import page
-    from mocapress.viewer.server import PageServer, nothing
+    from mocapress.viewer.server import PageServer, first_of
 
     try:
-        server = PageServer(document, page.policy(served=True), port, more or nothing)
+        server = PageServer(document, page.policy(served=True), port, first_of(more, page.lent))
     except OSError as error:
         usage(f"port {port}: {error.strerror}")
     with server:

@@ -44,6 +44,8 @@ class ServedLibrary(AbstractContextManager["ServedLibrary"]):
 
     def __init__(self, path: Path, *, strict: bool = True) -> None:
         self._library = open_library(path)
+        # Names of files need not be UTF-8, a page is.
+        self.name = _readable(path.name)
         self._strict = strict
         self._reader = ThreadPoolExecutor(1)
 
@@ -109,10 +111,14 @@ def _first_of(opened: OpenedClip) -> slice:
 def _facts(clip: StoredClip) -> dict[str, object]:
     return {
         "id": clip.id,
-        "name": clip.name.encode(errors="surrogateescape").decode(errors="replace"),
+        "name": _readable(clip.name),
         "format": clip.format,
         "frames": clip.frames,
         "seconds": clip.duration,
         "skeleton": clip.skeleton,
         "labels": clip.labels,
     }
+
+
+def _readable(name: str) -> str:
+    return name.encode(errors="surrogateescape").decode(errors="replace")

@@ -17,6 +17,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from mocapress.viewer.server import Answer
+
 # A wheel carries the sources beside this module; a checkout has them in its folder viewer/.
 _PACKAGED = Path(__file__).with_name("web")
 SOURCES = _PACKAGED if _PACKAGED.is_dir() else Path(__file__).parents[3] / "viewer"
@@ -34,6 +36,10 @@ _XZ = "vendor/xz/xz.wasm"
 _KINEMATICS = "wasm/kinematics.wasm"
 _COMMENT = re.compile(r"^[ \t]*(/\*\*\n.*?\*/|/\*\* .*?\*/|//.*?)\n", re.MULTILINE | re.DOTALL)
 """Comments on lines of their own, which only developers need; licences stand in the document."""
+_LENT = {
+    "/vendor/sqlite/sqlite3.mjs": "text/javascript",
+    "/vendor/sqlite/sqlite3.wasm": "application/wasm",
+}
 _IMPORT = re.compile(r"""(\b(?:from|import)\s*)(["'])([^"'\n]+)\2""")
 
 
@@ -124,6 +130,12 @@ def assets_for(codecs: Collection[str], methods: Collection[int]) -> list[str]:
     if 2 in methods:
         needed.add(_DICTIONARY)
     return [name for name in asset_names() if name in needed]
+
+
+def lent(path: str) -> Answer | None:
+    """Give SQLite to the page, which asks for it where a library is dropped on it."""
+    kind = _LENT.get(path)
+    return None if kind is None else Answer((SOURCES / path[1:]).read_bytes(), kind)
 
 
 def encoded(names: Collection[str]) -> dict[str, str]:

@@ -24,6 +24,15 @@ def nothing(path: str) -> Answer | None:  # noqa: ARG001
     return None
 
 
+def first_of(*ways: Callable[[str], Answer | None]) -> Callable[[str], Answer | None]:
+    """Give what the first of several ways gives that knows the path."""
+
+    def more(path: str) -> Answer | None:
+        return next(filter(None, (way(path) for way in ways)), None)
+
+    return more
+
+
 class PageServer(ThreadingHTTPServer):
     """A server on the loopback interface that answers ``GET /`` with one document.
 

@@ -21,7 +21,16 @@ const LONG = 4096; // frames
  * @throws {FileError|import("../../mcz/error.js").MczError}
  */
 export async function readMcz(bytes, models, beside, assets, early = false) {
-  const mcz = await openMcz(bytes, assets);
+  return readOpened(await openMcz(bytes, assets), models, beside, assets, early);
+}
+
+/**
+ * Read what was opened; see `readMcz`.
+ *
+ * @param {import("../../mcz/mcz.js").Mcz & {decode?: function(number): AsyncIterable}} mcz decode:
+ *     gives the chunks of a stream decoded, where they are no plain ones
+ */
+export async function readOpened(mcz, models, beside, assets, early = false) {
   const main = mcz.streams.findIndex(({ kind }) => kind === "channels");
   if (main < 0) throw new FileError("no stream that this page knows");
   const stream = mcz.streams[main];
@@ -62,7 +71,8 @@ async function decoded(mcz, index, models, assets, frames) {
     });
   }
   const channels = columns.map(() => new Float64Array(frames));
-  for await (const chunk of decodeStream(mcz, index, models, assets)) {
+  const chunks = mcz.decode ? mcz.decode(index) : decodeStream(mcz, index, models, assets);
+  for await (const chunk of chunks) {
     const end = Math.min(chunk.first + chunk.frames, frames);
     channels.forEach((channel, column) => {
       for (let frame = chunk.first, at = column; frame < end; frame++, at += columns.length) {

@@ -38,6 +38,28 @@ export class Reader {
   }
 
   /**
+   * Open a library; `stored` then reads its clips.
+   *
+   * @param {{name: string, bytes: Uint8Array}} file which is handed over
+   * @param {string} code SQLite's module
+   * @param {Uint8Array} wasm
+   * @returns {Promise<{clips: import("../panels/library.js").StoredClip[], errors: string[]}>}
+   */
+  library(file, code, wasm) {
+    return this.#ask({ library: { file, code, wasm } }, () => {}, [file.bytes.buffer, wasm.buffer]);
+  }
+
+  /**
+   * @param {number} stored id of a clip of the library
+   * @param {string} name for messages
+   * @param {function(Read): void} begun as of `files`
+   * @returns {Promise<Read>}
+   */
+  stored(stored, name, begun) {
+    return this.#ask({ stored, name }, begun, []);
+  }
+
+  /**
    * @param {string} text JSON: the clips that the page carries
    * @param {function(Read): void} begun as of `files`
    * @returns {Promise<Read>}

@@ -3,9 +3,11 @@ import { Assets } from "../../mcz/assets.js";
 import { embeddedClips } from "../reading/embedded.js";
 import { FileError } from "../reading/file_error.js";
 import { message as messageOf, readFiles } from "../reading/files.js";
+import { SqliteLibrary } from "../reading/library.js";
 import { placed } from "./placing.js";
 
 let assets;
+let library;
 
 /** @param {Object<string, string>} carried the page's binary files, in base64 */
 export function begin(carried) {
@@ -23,17 +25,46 @@ export function begin(carried) {
 /**
  * Read files or what the page carries; of long clips first only the beginning, which is told early.
  *
- * @param {{id: number, files?: {name: string, bytes: Uint8Array}[], text?: string}} question
+ * @param {{id: number, files?: {name: string, bytes: Uint8Array}[], text?: string, library?: Object,
+ *     stored?: number, name?: string}} question of ./reader.js
  */
-export async function answer({ id, files, text }) {
-  const read = (early) =>
-    files ? readFiles(files, assets, early) : embeddedClips(text, assets, early);
+export async function answer({ id, ...question }) {
+  const { files, text, stored, name } = question;
+  if (question.library) {
+    postMessage({ id, early: false, read: await opened(question.library) });
+    return;
+  }
+  const read = (early) => {
+    if (files) return readFiles(files, assets, early);
+    return stored ? readStored(stored, name, early) : embeddedClips(text, assets, early);
+  };
   let found = await read(true);
   if (found.clips.some(({ more }) => more)) {
     await tell({ id, early: true }, found);
     found = await read(false);
   }
   await tell({ id, early: false }, found);
+}
+
+async function opened({ file, code, wasm }) {
+  const url = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
+  try {
+    const { default: init } = await import(url);
+    library = await SqliteLibrary.open(file.bytes, init, wasm, assets);
+    return { clips: library.catalogue(), errors: [] };
+  } catch (error) {
+    return { clips: [], errors: [messageOf(error, file.name)] };
+  } finally {
+    URL.revokeObjectURL(url);
+  }
+}
+
+async function readStored(id, name, early) {
+  try {
+    return { clips: [await library.read(id, early)], errors: [] };
+  } catch (error) {
+    return { clips: [], errors: [messageOf(error, name)] };
+  }
 }
 
 async function tell(message, { clips, errors }) {

@@ -1,0 +1,159 @@
+// Reads libraries (docs/format/library.md) by SQLite's own WebAssembly build, in viewer/vendor/sqlite.
+import { decodeStream, mczOfParts } from "../../mcz/mcz.js";
+import { FileError } from "./file_error.js";
+import { readOpened } from "./mcz.js";
+
+const APPLICATION_ID = 0x4d435a4c;
+const VERSION = 1;
+const TABLES = ["clips", "chunks", "runs", "texts", "skeletons", "labels", "models"];
+const [JOURNAL, NOT_WAL] = [18, 1]; // where the header says that there is a write-ahead log
+
+const CATALOGUE = `
+  SELECT clips.id AS id, clips.name AS name, coalesce(format, '') AS format, frames,
+      frames * frame_time AS seconds, skeletons.name AS skeleton,
+      (SELECT group_concat(label, char(0)) FROM labels WHERE clip = clips.id) AS labels
+  FROM clips LEFT JOIN skeletons ON skeletons.id = skeleton WHERE frames > 0 ORDER BY clips.name`;
+const CLIP = `
+  SELECT clips.name AS name, file, format, size, sha256, problems, head, record AS skeleton,
+      packed AS text, list, sections
+  FROM clips LEFT JOIN skeletons ON skeletons.id = skeleton LEFT JOIN texts ON texts.id = text
+      LEFT JOIN chunks ON chunks.clip = clips.id WHERE clips.id = ?`;
+const RUNS = `
+  SELECT stream, first, frames, source, source_first AS sourceFirst FROM runs WHERE clip = ?
+  ORDER BY stream, first`;
+
+/** A library in memory; it is only read. */
+export class SqliteLibrary {
+  /**
+   * @param {Uint8Array} bytes the file, which is changed: a library on a disk keeps a log, one here
+   *     does not
+   * @param {function(object): Promise<object>} init the default export of SQLite's module
+   * @param {Uint8Array} wasm
+   * @param {import("../../mcz/assets.js").Assets} assets
+   * @returns {Promise<SqliteLibrary>}
+   * @throws {FileError} when it is no library
+   */
+  static async open(bytes, init, wasm, assets) {
+    // What is wrong with a file is told on the page, not on the console.
+    globalThis.sqlite3ApiConfig = { warn: () => {} };
+    const sqlite = await init({ wasmBinary: wasm, locateFile: (name) => name });
+    bytes.fill(NOT_WAL, JOURNAL, JOURNAL + 2);
+    const { capi, oo1 } = sqlite;
+    const db = new oo1.DB(":memory:");
+    const place = sqlite.wasm.allocFromTypedArray(bytes);
+    const flags = capi.SQLITE_DESERIALIZE_FREEONCLOSE | capi.SQLITE_DESERIALIZE_READONLY;
+    db.checkRc(capi.sqlite3_deserialize(db, "main", place, bytes.length, bytes.length, flags));
+    const library = new SqliteLibrary(db, assets);
+    library.#check();
+    return library;
+  }
+
+  constructor(db, assets) {
+    this.db = db;
+    this.assets = assets;
+  }
+
+  #check() {
+    const found = this.#said(() => this.db.selectValue("PRAGMA application_id"));
+    if (found !== APPLICATION_ID) throw new FileError("not a library");
+    const version = this.db.selectValue("PRAGMA user_version");
+    if (version !== VERSION) {
+      throw new FileError("version of the library", { expected: VERSION, found: version });
+    }
+    // A view may compute for ever, a table may not.
+    const tables = this.db.selectValues("SELECT name FROM sqlite_schema WHERE type = 'table'");
+    const missing = TABLES.find((table) => !tables.includes(table));
+    if (missing) throw new FileError("not the tables of a library", { expected: missing });
+  }
+
+  /** @returns {import("../panels/library.js").StoredClip[]} */
+  catalogue() {
+    return this.#said(() => this.db.selectObjects(CATALOGUE)).map((clip) => ({
+      ...clip,
+      labels: clip.labels ? clip.labels.split("\0").sort() : [],
+    }));
+  }
+
+  /**
+   * Decode a clip; frames that it shares are taken from the others.
+   *
+   * @param {number} id
+   * @param {boolean} early as of `readMcz`
+   * @returns {Promise<import("./clip.js").Clip>}
+   */
+  async read(id, early) {
+    const clip = await this.#open(id);
+    const models = this.#said(() => this.db.selectValues("SELECT file FROM models"));
+    const runs = this.#said(() => this.db.selectObjects(RUNS, [id]));
+    if (runs.length) {
+      const own = clip.mcz.chunks;
+      clip.mcz.chunks = own.map((chunks, stream) => piecesOf(chunks, runs, stream, id));
+      clip.mcz.decode = (stream) => this.#decode({ ...clip.mcz, own }, stream, id, models);
+    }
+    return { ...(await readOpened(clip.mcz, models, null, this.assets, early)), name: clip.name };
+  }
+
+  async #open(id) {
+    const row = this.#said(() => this.db.selectObject(CLIP, [id]));
+    if (!row) throw new FileError("damaged: there is no such clip", { found: `id ${id}` });
+    if (!row.head) throw new FileError("holds a file that is no motion", { file: row.name });
+    return { name: row.name, mcz: await mczOfParts(row, this.assets) };
+  }
+
+  /** Give the pieces of a clip with their frames. */
+  async *#decode(mcz, stream, id, models) {
+    const rows = new Map();
+    for (const piece of mcz.chunks[stream]) {
+      const { source, first, frames, sourceFirst } = piece;
+      if (!rows.has(source)) {
+        const other = source === id ? { ...mcz, chunks: mcz.own } : (await this.#open(source)).mcz;
+        rows.set(source, await ownRows(other, stream, models, this.assets));
+      }
+      const width = mcz.streams[stream].columns.length;
+      const values = rows.get(source).subarray(sourceFirst * width, (sourceFirst + frames) * width);
+      if (values.length !== frames * width) throw new FileError("damaged: a run of missing frames");
+      yield { first, frames, values };
+    }
+  }
+
+  /** An error of SQLite is the file's fault. */
+  #said(ask) {
+    try {
+      return ask();
+    } catch (error) {
+      if (error.name !== "SQLite3Error") throw error;
+      throw new FileError(`the library is damaged (${error.message})`);
+    }
+  }
+}
+
+/** All frames of a stream in pieces, as chunks: its own and those of its runs. */
+function piecesOf(chunks, runs, stream, id) {
+  const total = (list) => list.reduce((sum, { frames }) => sum + frames, 0);
+  const mine = runs.filter((run) => run.stream === stream);
+  const end = { first: total(chunks) + total(mine), frames: 0 };
+  const pieces = [];
+  let [reached, own] = [0, 0];
+  for (const run of [...mine, end]) {
+    const frames = run.first - reached;
+    if (frames < 0) throw new FileError("damaged: the runs of other clips");
+    if (frames) pieces.push({ first: reached, frames, source: id, sourceFirst: own });
+    own += frames;
+    if (run.frames) pieces.push(run);
+    reached = run.first + run.frames;
+  }
+  return pieces;
+}
+
+/** The frames that a clip has in chunks of its own: F x C, row by row. */
+async function ownRows(mcz, stream, models, assets) {
+  const parts = [];
+  for await (const { values } of decodeStream(mcz, stream, models, assets)) parts.push(values.slice());
+  const rows = new Float64Array(parts.reduce((sum, part) => sum + part.length, 0));
+  let at = 0;
+  for (const part of parts) {
+    rows.set(part, at);
+    at += part.length;
+  }
+  return rows;
+}
