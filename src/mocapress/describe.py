@@ -10,7 +10,7 @@ from mocapress.container import diffma_json
 from mocapress.errors import MissingModelError
 from mocapress.models import Place, find_model
 from mocapress.motion import Clip
-from mocapress.motion.convert import suggest_unit
+from mocapress.motion.units import suggest_unit
 from mocapress.source import Source
 
 
