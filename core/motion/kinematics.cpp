@@ -107,7 +107,8 @@ void Rig::direct(const std::vector<Action>& actions, const double* row, const do
     const auto& [column, joint, turning] = actions[a];
     const Move& move = moves_[joint];
     Quaternion turn = {1, 0, 0, 0};
-    if (move.parent >= 0) std::copy_n(turns + 4 * move.parent, 4, turn.begin());
+    if (move.parent >= 0)
+      std::copy_n(turns + 4 * static_cast<std::ptrdiff_t>(move.parent), 4, turn.begin());
     std::size_t axis = 0;
     if (turning) {
       if (move.framed) turn = product(turn, move.frame);

@@ -29,8 +29,8 @@ std::vector<double> sines_of(int length) {
 
 template <int kLength>
 const std::vector<double>& table() {
-  static const std::vector<double> made = sines_of(kLength);
-  return made;
+  static const std::vector<double> kSines = sines_of(kLength);
+  return kSines;
 }
 
 const std::vector<double>& table_of(int length) {

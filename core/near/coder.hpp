@@ -104,12 +104,12 @@ class Coder {
   std::vector<Channel> channels;
 
   Model knots{
-      kMagnitudeDecisions, {120, 100, 10 * kChannelContexts, 24, 100, 120, 144, 144}, 4, 10};
-  Model classes{kEnds.size() - 1, {100, 100, 10 * kChannelContexts, 24, 100, 100, 120, 100}, 6, 10};
+      kMagnitudeDecisions, {120, 100, kChannelContexts * 10, 24, 100, 120, 144, 144}, 4, 10};
+  Model classes{kEnds.size() - 1, {100, 100, kChannelContexts * 10, 24, 100, 100, 120, 100}, 6, 10};
   Model sines{
-      kMagnitudeDecisions, {120, 100, 10 * kChannelContexts, 24, 160, 120, 144, 432}, 16, 60};
-  Model splits{1, {60, 36, 10 * kChannelContexts, 24, 60, 40, 144, 216}, 6, 10};
-  Model signs{1, {90, 30, 9 * kChannelContexts, 9, 27, 90, 81, 9 * kChannelContexts}, 2, 10};
+      kMagnitudeDecisions, {120, 100, kChannelContexts * 10, 24, 160, 120, 144, 432}, 16, 60};
+  Model splits{1, {60, 36, kChannelContexts * 10, 24, 60, 40, 144, 216}, 6, 10};
+  Model signs{1, {90, 30, kChannelContexts * 9, 9, 27, 90, 81, kChannelContexts * 9}, 2, 10};
 
  private:
   static const Block* at(const Channel& channel, int frame) {

@@ -15,7 +15,7 @@ namespace mocapress::near {
 
 inline constexpr int kBands = 10;
 inline constexpr int kSpectrum = 27;
-inline constexpr int kChannelContexts = 128;
+inline constexpr std::size_t kChannelContexts = 128;
 
 // 2 log2 and 3 log2 of 1 + x / 16, the first rounded, the second down.
 inline int halves(int x) {
@@ -54,7 +54,7 @@ inline int seen(const Block* other, int k, int length) {
   at = std::max(at, 1);
   if (at >= other->length) return 0;
   const int number = std::min(std::abs(other->numbers[at]), 2047);
-  return (16 * number * kRoots[static_cast<std::size_t>(apart + 5)]) >> 8;
+  return (16 * number * kRoots[static_cast<std::size_t>(apart) + 5]) >> 8;
 }
 
 inline int magnitude_at(const Block* block, int k) {

@@ -42,8 +42,8 @@ class Logistic {
 };
 
 inline const Logistic& logistic() {
-  static const Logistic tables;
-  return tables;
+  static const Logistic kTables;
+  return kTables;
 }
 
 // Where a decision is made: a place in each of eight tables, and which weights mix them.
@@ -58,14 +58,14 @@ struct Counter {
   std::uint16_t count = 0;
 
   void learn(bool one, int most) {
-    static const auto rates = [] {
+    static const auto kRates = [] {
       std::array<std::int32_t, 256> made{};
       for (int n = 0; n < 256; ++n) made[n] = 655360 / (10 * n + 16);
       return made;
     }();
     const int target = one ? 65535 : 0;
-    slow = moved(slow, target, rates[count], 16);
-    fast = moved(fast, target, rates[std::min<int>(count, 18)], 64);
+    slow = moved(slow, target, kRates[count], 16);
+    fast = moved(fast, target, kRates[std::min<int>(count, 18)], 64);
     if (count < most) ++count;
   }
 
@@ -163,7 +163,8 @@ std::int64_t code_magnitude(Model& model, Side& side, const Context& context, st
   const std::int64_t above = value - kUnary + 1;
   int length = 0;
   while (length < kMostLength &&
-         model.code(side, context, static_cast<std::size_t>(kUnary + std::min(length, 17)),
+         model.code(side, context,
+                    std::size_t{kUnary} + static_cast<std::size_t>(std::min(length, 17)),
                     above >> (length + 1) > 0)) {
     ++length;
   }

@@ -19,8 +19,8 @@ constexpr double kNoise = 0.3;   // of a step, squared: below it nothing is to b
 
 // sqrt(2 / 64) cos(pi k (t + 1/2) / 64) at [64 (k - 1) + t].
 const std::vector<double>& cosines() {
-  static const auto made = [] {
-    std::vector<double> turns(256), table(63 * 64);
+  static const auto kCosines = [] {
+    std::vector<double> turns(256), table(std::size_t{63} * 64);
     const double height = std::sqrt(2.0 / 64);
     for (std::size_t i = 0; i < 256; ++i) {
       turns[i] = height * sine_cosine(3.141592653589793 * static_cast<double>(i) / 128).cosine;
@@ -30,7 +30,7 @@ const std::vector<double>& cosines() {
     }
     return table;
   }();
-  return made;
+  return kCosines;
 }
 
 // The waves 1 to 63 of 64 numbers.
@@ -150,14 +150,14 @@ void Prediction::average(Own& own) const {
   whole.insert(whole.end(), kReach, own.values.back());
   own.averaged.assign(length_, 0.0);
   double before = 0;
-  for (int k = 0; k <= 2 * kReach; ++k) {
-    const double weight = kReach + 1 - std::abs(k - kReach);
+  for (std::size_t k = 0; k <= 2 * kReach; ++k) {
+    const auto weight = static_cast<double>(k <= kReach ? k + 1 : 2 * kReach + 1 - k);
     const double* const from = whole.data() + k + 1;
     for (std::size_t t = 0; t < length_; ++t) own.averaged[t] += weight * from[t];
-    before +=
-        weight * (k <= kReach ? own.past[k] : own.values[static_cast<std::size_t>(k) - kReach - 1]);
+    before += weight * (k <= kReach ? own.past[k] : own.values[k - kReach - 1]);
   }
-  for (double& value : own.averaged) value = (value - before) / ((kReach + 1) * (kReach + 1));
+  for (double& value : own.averaged)
+    value = (value - before) / static_cast<double>((kReach + 1) * (kReach + 1));
 }
 
 void Prediction::end_span(std::size_t frames) {
@@ -171,7 +171,7 @@ void Prediction::end_span(std::size_t frames) {
       waves_of(&channels_[i].rest[start], own + 2 * kWaves);
     }
     for (std::size_t i = 0; i < channels_.size(); ++i) learn(i, waves);
-    seen_ += kWaves;
+    seen_ += static_cast<double>(kWaves);
   }
   seen_ = seen_ * kFade;
   for (Own& own : channels_) {
@@ -189,14 +189,14 @@ void Prediction::learn(std::size_t i, const std::vector<double>& waves) {
   const double* const target = &waves[i * 3 * kWaves];
   const double* const rest = target + 2 * kWaves;
   std::vector<double> sources(m);
-  for (int k = 0; k < kWaves; ++k) {
+  for (std::size_t k = 0; k < kWaves; ++k) {
     double energy = 0;
-    for (int j = std::max(0, k - 2); j <= std::min(kWaves - 1, k + 2); ++j) {
+    for (std::size_t j = k - std::min<std::size_t>(k, 2); j < std::min(kWaves, k + 3); ++j) {
       energy += rest[j] * rest[j];
     }
     const double weight = 1 / (kNoise * (own.step * own.step) + energy / 5);
     for (std::size_t a = 0; a < m; ++a) {
-      sources[a] = waves[(own.sources[a / 2] * 3 + a % 2) * kWaves + static_cast<std::size_t>(k)];
+      sources[a] = waves[(own.sources[a / 2] * 3 + a % 2) * kWaves + k];
     }
     for (std::size_t a = 0; a < m; ++a) {
       const double weighed = weight * sources[a];

@@ -32,9 +32,9 @@ class Prediction {
   void end_span(std::size_t frames);
 
  private:
-  static constexpr int kReach = 6;  // frames to both sides of an average
-  static constexpr int kGroup = 64;
-  static constexpr int kWaves = kGroup - 1;
+  static constexpr std::size_t kReach = 6;  // frames to both sides of an average
+  static constexpr std::size_t kGroup = 64;
+  static constexpr std::size_t kWaves = kGroup - 1;
 
   struct Own {
     std::vector<std::size_t> sources;

@@ -1,8 +1,8 @@
 #include "near_encoding/encoder.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 #include "coding/sides.hpp"
@@ -40,11 +40,11 @@ class Encoding {
     for (int round = 0; round < task_.rounds && raise(round); ++round) curves();
     const auto corrections = correct();
     const auto kept = keep();
-    Marks marks(*side_, frames_, channels_);
+    Marks marks(side_, frames_, channels_);
     marks.corrections(corrections, [](const Correction&) {});
     marks.kept(kept, [](std::size_t, std::size_t, double) {});
     Coded coded;
-    coded.payload = side_->finish();
+    coded.payload = side_.finish();
     coded.values.resize(frames_ * channels_);
     decode(coded.payload, coded.values.data(), frames_, task_.plan);
     const std::size_t points = measure_.points(channels_);
@@ -100,7 +100,7 @@ class Encoding {
 
   // Codes the curves of all channels; `drawn_` is what they give.
   void curves() {
-    side_.emplace();
+    side_ = RangeWriting();
     coder_ = Coder();
     drawn_.assign(frames_ * channels_, 0.0);
     begin();
@@ -121,7 +121,7 @@ class Encoding {
 
   // Whether the curves have another number in place of what was given.
   bool is_replaced(std::size_t i) const {
-    return std::memcmp(&given_[i], &wanted_[i], sizeof(double)) != 0;
+    return std::bit_cast<std::uint64_t>(given_[i]) != std::bit_cast<std::uint64_t>(wanted_[i]);
   }
 
   void begin() {
@@ -129,10 +129,10 @@ class Encoding {
     Difference<6> firsts;
     bool moved = true;
     for (std::size_t c = 0; c < channels_; ++c) {
-      moved = side_->bit(moves[moved ? 1 : 0], moves_[c]);
+      moved = side_.bit(moves[moved ? 1 : 0], moves_[c]);
       const double unit = steps_[c] * (moved ? task_.plan.knot : 0.25);
       const auto number = std::llround(wanted_[c] / unit);
-      firsts.code(*side_, number);
+      firsts.code(side_, number);
       const double value = static_cast<double>(number) * unit;
       if (moved) {
         Channel& channel = coder_.channels.emplace_back();
@@ -183,13 +183,13 @@ class Encoding {
     const Block* const before = channel.blocks.empty() ? nullptr : &channel.blocks.back();
     const Around around = coder_.around(i, before, start, length);
     const bool is_split = cut.pieces[next].block.length < length;
-    if (length > kShortest && coder_.split(*side_, around, length, is_split)) {
+    if (length > kShortest && coder_.split(side_, around, length, is_split)) {
       write(i, cut, next, start, length / 2);
       write(i, cut, next, start + length / 2, length / 2);
       return;
     }
     Block block = cut.pieces[next++].block;
-    coder_.code(*side_, i, around, block);
+    coder_.code(side_, i, around, block);
     channel.blocks.push_back(block);
   }
 
@@ -352,7 +352,7 @@ class Encoding {
   std::size_t pairs_ = 0;
   std::vector<std::vector<std::size_t>> before_;
   std::vector<std::size_t> begins_;
-  std::optional<RangeWriting> side_;
+  RangeWriting side_;
   Coder coder_;
   Prediction prediction_;
   std::vector<double> drawn_;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -14,7 +14,7 @@ namespace mocapress::near {
 // In what errors are measured: of a joint, by three points at a distance along its axes; without
 // a rig, of every value by itself.
 struct Measure {
-  std::optional<Rig> rig;
+  std::shared_ptr<const Rig> rig;
   bool radians = false;
   double radius = 0;           // of the points, in the units of lengths
   std::vector<double> others;  // of each channel, if it moves no joint: what an error of 1 counts

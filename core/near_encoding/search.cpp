@@ -12,14 +12,14 @@ constexpr double kMostNumber = 1 << 29;
 
 // Bits that a decision costs of this chance, in 1/65536.
 double bits_of(int chance) {
-  static const auto table = [] {
+  static const auto kBits = [] {
     std::vector<double> made(4097);
     for (std::size_t i = 0; i < made.size(); ++i) {
       made[i] = -std::log2((static_cast<double>(i) * 16 + 8) / 65536);
     }
     return made;
   }();
-  return table[static_cast<std::size_t>(chance) >> 4];
+  return kBits[static_cast<std::size_t>(chance) >> 4];
 }
 
 double bits_of(int chance_of_one, bool one) {

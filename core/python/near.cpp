@@ -33,7 +33,7 @@ near::Measure measure_of(const nb::object& skeleton, const Columns& columns, boo
     channels.push_back(
         {known ? joint : -1, static_cast<Kind>(known ? kind - kKindNames.begin() : 0)});
   }
-  measure.rig.emplace(skeleton_from(skeleton), channels, radians);
+  measure.rig = std::make_shared<Rig>(skeleton_from(skeleton), channels, radians);
   return measure;
 }
 
