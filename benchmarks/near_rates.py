@@ -1,6 +1,6 @@
 """Measures `near` beside ACL, at ACL's mean errors and within its largest.
 
-    OPENBLAS_NUM_THREADS=1 python benchmarks/near_rates.py CORPUS/amc/cmu [--clips 05_05,141_01] [--p 0.1]
+    python benchmarks/near_rates.py CORPUS/amc/cmu [--clips 05_05,141_01] [--p 0.1]
 
 ACL's figures are in near_acl.tsv beside this script. Nothing of `near` was tuned on the clips that
 are taken by default. Bytes are those of codec header and payloads, without names and layout; errors
