@@ -15,7 +15,7 @@ ROWS = [
     {"version", "errors", "_core"},
     {"records", "storage"},
     {"motion"},
-    {"formats", "codecs"},
+    {"formats", "codecs", "figures"},
     {"source"},
     {"container"},
     {"models"},

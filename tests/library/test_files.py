@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import tarfile
 from pathlib import Path
 
 import numpy as np
@@ -65,6 +66,46 @@ def test_a_second_add_adds_what_is_new_or_changed(clips: Path, tmp_path: Path) -
     with mp.open_library(library) as found:
         assert found.read_bytes("bvh/none.bvh") == b"still no motion"
         assert not found.verify()
+
+
+def test_a_clip_whose_skeleton_has_changed_is_added_again(clips: Path, tmp_path: Path) -> None:
+    library, asf = tmp_path / "library.mocapdb", clips / "01" / "cmu_01_01.asf"
+    mocapress("library", "add", library, clips)
+    mocapress("library", "label", library, "01", "--add", "kept")
+    asf.write_bytes(asf.read_bytes().replace(b"length 0.45", b"length 0.5", 1))
+    second = mocapress("library", "add", library, clips)
+    assert f"{AMC}: replaced" in second.output
+    with mp.open_library(library) as found:
+        assert mp.positions(found.load(f"01/{AMC}")).tobytes() == (
+            mp.positions(mp.read(clips / "01" / AMC)).tobytes()
+        )
+        assert found[f"01/{AMC}"].labels == ("kept",)
+        assert not found.verify()
+    assert "7 unchanged" in mocapress("library", "add", library, clips).output
+    asf.write_bytes(b"broken")  # nothing to be had from that
+    third = mocapress("library", "add", library, clips / "01" / AMC, "--into", "01")
+    assert (third.exit_code, third.output) == (0, "")  # as it is
+
+
+def test_two_archives_with_files_of_one_name(clips: Path, tmp_path: Path) -> None:
+    library = tmp_path / "library.mocapdb"
+    archives = [tmp_path / "one.tar", tmp_path / "two.tar.gz"]
+    for archive, text in zip(archives, (b"", b"\n"), strict=True):
+        (clips / "bvh" / "deep" / BVH).write_bytes(
+            (clips / "bvh" / "deep" / BVH).read_bytes() + text
+        )
+        with tarfile.open(archive, "w:gz" if archive.suffix == ".gz" else "w") as made:
+            made.add(clips / "bvh" / "deep" / BVH, "free.bvh")
+    first = (clips / "bvh" / "deep" / BVH).read_bytes()[:-1]
+    done = mocapress("library", "add", library, *archives)
+    assert done.exit_code == 2
+    assert "two.tar.gz: free.bvh" in done.output
+    assert "--into" in done.output
+    with mp.open_library(library) as found:
+        assert found.read_bytes("free.bvh") == first
+    assert mocapress("library", "add", library, archives[1]).exit_code == 0
+    with mp.open_library(library) as found:
+        assert found.read_bytes("free.bvh") == first + b"\n"
 
 
 def test_only_the_time_has_changed(clips: Path, tmp_path: Path) -> None:

@@ -44,7 +44,7 @@ def path(tmp_path: Path, samples: Path) -> Path:
 def visited(
     browser: Browser, library: ServedLibrary | None, size: tuple[int, int]
 ) -> Iterator[Visit]:
-    name = library and library.name
+    name = library.name if library else None
     document = page.document([], served=True, library=name)
     more = first_of(library.answer if library else nothing, page.lent)
     with PageServer(document, page.policy(served=True), 0, more) as server:

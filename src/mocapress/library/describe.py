@@ -7,7 +7,9 @@ from mocapress.library.library import Library
 
 _COUNTS = """
 SELECT (SELECT count(*) FROM clips), (SELECT coalesce(sum(frames), 0) FROM clips),
-    (SELECT sum(frames * frame_time) FROM clips), (SELECT coalesce(sum(size), 0) FROM clips),
+    (SELECT sum(frames * frame_time) FROM clips),
+    (SELECT sum(frames) FROM clips WHERE frame_time IS NULL),
+    (SELECT coalesce(sum(size), 0) FROM clips),
     (SELECT coalesce(sum(frames), 0) FROM runs), (SELECT count(*) FROM skeletons),
     (SELECT count(*) FROM texts), (SELECT count(*) FROM companions), (SELECT count(*) FROM models)
 """
@@ -16,7 +18,7 @@ SELECT (SELECT count(*) FROM clips), (SELECT coalesce(sum(frames), 0) FROM clips
 def describe_library(library: Library) -> dict[str, Any]:
     """Describe a library: how much it holds, and how often it holds it."""
     with library.db.reading() as connection:
-        clips, frames, seconds, raw, shared, skeletons, texts, companions, models = (
+        clips, frames, seconds, unrated, raw, shared, skeletons, texts, companions, models = (
             connection.execute(_COUNTS).fetchone()
         )
         kinds = dict(
@@ -32,6 +34,7 @@ def describe_library(library: Library) -> dict[str, Any]:
         "frames": frames,
         "frames_shared": shared or None,
         "seconds": seconds,
+        "frames_of_unknown_rate": unrated or None,
         "raw_bytes": raw,
         "library_bytes": size,
         "ratio": raw / size if raw else None,

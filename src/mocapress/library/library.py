@@ -25,7 +25,7 @@ from mocapress.library.database import WAIT, Database
 from mocapress.library.reading import APPEND, READ, Reading, Which
 from mocapress.library.removing import recompress, remove_clips
 from mocapress.models import Place, load_model
-from mocapress.motion import Clip
+from mocapress.motion import Clip, Skeleton
 from mocapress.source import Named, Source
 
 if TYPE_CHECKING:
@@ -160,6 +160,26 @@ class Library(Reading):
                 ).fetchone()
                 for table in ("clips", "companions")
             )
+
+    def companions(self, name: str) -> list[str]:
+        """Give the names of the files that belong to a clip; none where there is no such clip."""
+        with self.db.reading() as connection:
+            found = connection.execute(
+                "SELECT companions.name FROM companions JOIN belongs ON companion = companions.id "
+                "JOIN clips ON clip = clips.id WHERE clips.name = CAST(? AS TEXT)",
+                [names.stored(name)],
+            )
+            return [companion for (companion,) in found]
+
+    def has_skeleton(self, name: str, skeleton: Skeleton) -> bool:
+        """Say whether a clip has this skeleton."""
+        with self.db.reading() as connection:
+            row = connection.execute(
+                "SELECT hash FROM skeletons JOIN clips ON skeletons.id = skeleton "
+                "WHERE clips.name = CAST(? AS TEXT)",
+                [names.stored(name)],
+            ).fetchone()
+        return row is not None and row[0] == rows.skeleton_hash(skeleton)
 
     def unchanged(self, name: str) -> Added:
         """Say of a file that is there that nothing was done."""

@@ -14,8 +14,11 @@ from numpy.typing import NDArray
 from mocapress.codecs import Model
 from mocapress.container import Mcz, pack, unpack
 from mocapress.container.chunks import write_list
+from mocapress.container.skeletons import write_skeleton
 from mocapress.library import names
 from mocapress.models import model_bytes
+from mocapress.motion import Skeleton
+from mocapress.records import Writer
 
 Connection = sqlite3.Connection
 
@@ -121,6 +124,13 @@ def text_id(connection: Connection, packed: bytes) -> int:
         made = connection.execute("INSERT INTO texts(hash, packed) VALUES(?, ?)", (wanted, packed))
         return int(made.lastrowid or 0)
     return int(row[0])
+
+
+def skeleton_hash(skeleton: Skeleton) -> int:
+    """Give the hash by which a skeleton is found."""
+    writer = Writer()
+    write_skeleton(writer, skeleton)
+    return hash_of(bytes(writer.data))
 
 
 def skeleton_id(connection: Connection, record: bytes, name: str, joints: int) -> int:

@@ -36,6 +36,7 @@ _XZ = "vendor/xz/xz.wasm"
 _KINEMATICS = "wasm/kinematics.wasm"
 _COMMENT = re.compile(r"^[ \t]*(/\*\*\n.*?\*/|/\*\* .*?\*/|//.*?)\n", re.MULTILINE | re.DOTALL)
 """Comments on lines of their own, which only developers need; licences stand in the document."""
+_INDENT = re.compile(r"^[ \t]+", re.MULTILINE)
 _LENT = {
     "/vendor/sqlite/sqlite3.mjs": "text/javascript",
     "/vendor/sqlite/sqlite3.wasm": "application/wasm",
@@ -172,7 +173,10 @@ def modules() -> dict[str, str]:
             return f'{match[1]}"module:{target}"'
 
         begun.add(path)
-        source = _IMPORT.sub(named, _COMMENT.sub("", _text(path)))
+        text = _text(path)
+        if not path.startswith("vendor/"):
+            text = _INDENT.sub("", _COMMENT.sub("", text))
+        source = _IMPORT.sub(named, text)
         done[path] = f"{source}\n//# sourceURL=mocapress/{path}\n"
 
     add(_MAIN)

@@ -14,6 +14,7 @@ from mocapress.cli.library.label import label
 from mocapress.cli.library.list_clips import list_clips
 from mocapress.cli.library.recompress import recompress
 from mocapress.cli.library.remove import remove
+from mocapress.cli.library.sheet import sheet
 from mocapress.cli.library.verify import verify
 
 app = typer.Typer(
@@ -28,3 +29,4 @@ for _command in (info, extract, cat, remove, label, verify, recompress, export):
     app.command()(_command)
 app.command("import")(import_mcz)
 app.command()(check)
+app.command()(sheet)

@@ -1,15 +1,12 @@
 """``library add``."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
 from mocapress.cli.library.opening import File, opened
 from mocapress.cli.options import Asf, Debug, Jobs, Json
-
-if TYPE_CHECKING:
-    from mocapress.cli.batch import Job
 
 
 def add(
@@ -45,9 +42,8 @@ def add(
     What is there already and has not changed is left alone; what has changed is replaced. Each file
     is written as a whole, so whatever ends the command keeps what is done.
     """
-    from mocapress.cli.batch import run
     from mocapress.cli.compress import say_what_is_left_out
-    from mocapress.cli.library.added import facts, show, total
+    from mocapress.cli.library.added import add_all
     from mocapress.cli.library.codec import chosen_codec
     from mocapress.cli.library.inputs import Inputs, endings
     from mocapress.cli.models import open_model
@@ -59,17 +55,12 @@ def add(
     with opened(file, "a", debug=debug) as library:
         adder = library.adder(made, learned, overwrite=True)
 
-        def work(job: "Job") -> dict[str, Any]:
-            return facts(found.add(job, library, adder, label or []))
-
-        run(
+        add_all(
+            library,
             found.jobs(),
-            work,
+            lambda job: found.add(job, library, adder, label or []),
             threads=jobs,
             json=json,
-            show=show,
-            total=lambda done: total(done, file),
             debug=debug,
             whole=found.size,
-            close=library.close,
         )

@@ -1,14 +1,40 @@
 """What commands that add to a library say of each file, and of all."""
 
 from collections import Counter
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-from mocapress.cli.batch import Job
+from mocapress.cli.batch import Job, run
 from mocapress.library.adding import Added
+from mocapress.library.library import Library
 
 
-def facts(added: Added) -> dict[str, Any]:
+def add_all(
+    library: Library,
+    jobs: Iterable[Job],
+    add: Callable[[Job], Added],
+    *,
+    threads: int,
+    json: bool,
+    debug: bool,
+    whole: float | None = None,
+) -> None:
+    """Add the file of each job, and report; ``whole`` is the size of all, where it is known."""
+    run(
+        jobs,
+        lambda job: _facts(add(job)),
+        threads=threads,
+        json=json,
+        show=_show,
+        total=lambda done: _total(done, library.path),
+        debug=debug,
+        whole=whole,
+        close=library.close,
+    )
+
+
+def _facts(added: Added) -> dict[str, Any]:
     """Give what is reported of a file."""
     return {
         "state": added.state,
@@ -20,7 +46,7 @@ def facts(added: Added) -> dict[str, Any]:
     }
 
 
-def show(job: Job) -> None:
+def _show(job: Job) -> None:
     """Print a line, unless nothing was done."""
     found = job.result
     if found["state"] == "unchanged":
@@ -32,7 +58,7 @@ def show(job: Job) -> None:
     )
 
 
-def total(jobs: list[Job], file: Path) -> None:
+def _total(jobs: list[Job], file: Path) -> None:
     """Print a line for all of them."""
     states = Counter(job.result["state"] for job in jobs)
     raw = sum(job.result["raw_bytes"] for job in jobs)

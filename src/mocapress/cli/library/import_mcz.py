@@ -1,7 +1,7 @@
 """``library import``."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -10,6 +10,7 @@ from mocapress.cli.options import Debug, Jobs, Json, Models
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
+    from mocapress.library.adding import Added
 
 
 def import_mcz(
@@ -26,8 +27,8 @@ def import_mcz(
     debug: Debug = False,
 ) -> None:
     """Add the clips of .mcz files as they are coded, once they are checked."""
-    from mocapress.cli.batch import find, run
-    from mocapress.cli.library.added import facts, show, total
+    from mocapress.cli.batch import find
+    from mocapress.cli.library.added import add_all
     from mocapress.cli.models import open_models, places_for
     from mocapress.errors import CorruptError
     from mocapress.library.adding import Extra
@@ -37,22 +38,13 @@ def import_mcz(
     given = open_models(models or [])
     with opened(file, "a", debug=debug) as library:
 
-        def work(job: "Job") -> dict[str, Any]:
+        def add(job: "Job") -> "Added":
             own = str(job.source.relative_to(job.base)).removesuffix(".mcz")
             name = f"{into.strip('/')}/{own}".lstrip("/")
             source = job.opened()
             if source.kind != MCZ:
                 raise CorruptError("not compressed by mocapress", file=str(job.source))
             adder = library.adder(overwrite=True, models=places_for(job, given))
-            return facts(adder.file(source, name, Extra(modified_of(source))))
+            return adder.file(source, name, Extra(modified_of(source)))
 
-        run(
-            find(inputs, (".mcz",)),
-            work,
-            threads=jobs,
-            json=json,
-            show=show,
-            total=lambda done: total(done, file),
-            debug=debug,
-            close=library.close,
-        )
+        add_all(library, find(inputs, (".mcz",)), add, threads=jobs, json=json, debug=debug)

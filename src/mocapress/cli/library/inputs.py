@@ -74,6 +74,8 @@ class Inputs:
     asf: str | None
     left_out: int = 0
     """Members of archives that are no motion."""
+    _origins: dict[str, Path] = field(default_factory=dict)
+    """Where each file came from, where some come from archives."""
 
     @property
     def size(self) -> float | None:
@@ -95,7 +97,24 @@ class Inputs:
             if _is_archive(path):
                 yield from self._members(path)
             else:
-                yield from (job for job in find([path], endings()) if _shared(job))
+                for job in find([path], endings()):
+                    _shared(job)
+                    yield self._second(str(job.source.relative_to(job.base)), path) or job
+
+    def _second(self, name: str, origin: Path) -> Job | None:
+        """Give a job that fails for a file whose name another input has had.
+
+        Within one archive the last file of a name counts, as tar has it.
+        """
+        other = self._origins.setdefault(name, origin)
+        if other == origin:
+            return None
+        failed = Job(Path(name), Path(), stored=True)
+        failed.error = ParameterError(
+            f"{other} has a file of this name, too; add one of them with --into",
+            file=f"{origin}: {name}",
+        )
+        return failed
 
     def _members(self, path: Path) -> Iterator[Job]:
         try:
@@ -114,6 +133,9 @@ class Inputs:
                     name = entry.name.removeprefix("./")
                     if not entry.isreg() or not name.lower().endswith(endings()):
                         self.left_out += entry.isreg()
+                        continue
+                    if (failed := self._second(name, path)) is not None:
+                        yield failed
                         continue
                     part = archive.extractfile(entry)
                     data = part.read() if part else b""
@@ -159,13 +181,28 @@ class Inputs:
         if isinstance(job, Member):
             return self._add_member(job, name, library, adder, labels)
         changed = job.source.stat()
-        if library.has(name, changed.st_size, changed.st_mtime_ns) and not labels:
+        turned = self._skeleton_changed(job, library, name)
+        known = library.has(name, changed.st_size, changed.st_mtime_ns)
+        if known and not labels and not turned:
             return library.unchanged(name)
         source = job.opened()
         if source.format is not None and source.format.split is None:
             return library.add_companion(source, name)
         extra = Extra(modified_of(source), labels, beside=lambda: beside(source, name))
-        return adder.file(source, name, extra, self.asf)
+        return adder.file(source, name, extra, self.asf, again=turned)
+
+    def _skeleton_changed(self, job: Job, library: Library, name: str) -> bool:
+        """Say whether the skeleton's file that a clip was added with says something else now."""
+        for companion in library.companions(name):
+            of = by_name(companion)
+            file = Path(self.asf or job.source.parent / PurePosixPath(companion).name)
+            if of is not None and of.read_skeleton is not None and file.is_file():
+                try:
+                    skeleton = of.read_skeleton(file.read_bytes(), str(file))
+                except FormatError:
+                    return False  # which is told of where a clip is added with it
+                return not library.has_skeleton(name, skeleton)
+        return False
 
     def _add_member(
         self, job: Member, name: str, library: Library, adder: Adder, labels: Sequence[str]
