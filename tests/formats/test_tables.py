@@ -50,6 +50,20 @@ def test_numbers_of_every_format(number: str) -> None:
     assert mp.decompress(mp.compress(data)) == data
 
 
+@pytest.mark.parametrize("number", ["{:.16g}", "{:.6f}", "{:.9f}"])
+def test_float32_printed_as_decimals_are_coded_as_floats_and_read_as_printed(number: str) -> None:
+    places = markers(300).astype(np.float32).astype(np.float64)
+    floats, decimals = trc(places, number="{!r}"), trc(places, number=number)
+    sizes = [len(mp.compress(data, "exact:level=3")) for data in (floats, decimals)]
+    assert sizes[1] < 1.02 * sizes[0]
+    blob = mp.compress(decimals)
+    assert mp.decompress(blob) == decimals
+    expected = [[float(number.format(x)) for x in row] for row in places]
+    assert not np.array_equal(np.array(expected), places, equal_nan=True)
+    for clip in (mp.read(decimals), mp.load(blob)):
+        assert np.array_equal(clip.values, np.array(expected), equal_nan=True)
+
+
 def test_counters_and_times_are_no_numbers_to_code() -> None:
     layout = layout_of(trc(markers()), "walk.trc")
     assert [column.kind for column in layout.columns[:3]] == [SERIES, SERIES, NUMBERS]

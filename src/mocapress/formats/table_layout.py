@@ -22,6 +22,7 @@ from mocapress.formats.number_formats import (
     unpacked,
     write_format,
 )
+from mocapress.formats.printed_floats import as_floats
 from mocapress.formats.rows import read_rows
 from mocapress.motion.number_format import NumberFormat
 from mocapress.records import Reader, Writer
@@ -319,7 +320,7 @@ def _columns(of_columns: list[Cells]) -> tuple[tuple[TableColumn, ...], list[Val
             column = _column_of_numbers(of_columns[i], numbers, formats[place], missing[i])
             columns[i] = column
             if column.kind == NUMBERS:
-                kept.append(numbers)
+                kept.append(numbers if column.others else as_floats(numbers, column.format))
     return tuple(column for column in columns if column is not None), kept
 
 

@@ -15,6 +15,7 @@ from mocapress.errors import FormatError
 from mocapress.formats.bids import channels_beside
 from mocapress.formats.contract import Format, Near, Split
 from mocapress.formats.layout import NO_ROWS
+from mocapress.formats.printed_floats import as_printed
 from mocapress.formats.table_layout import (
     MISSING,
     NUMBERS,
@@ -107,7 +108,8 @@ def full_values(layout: TableLayout, values: Values) -> dict[int, Values]:
     stored = iter(np.ascontiguousarray(values.T))
     for place, column in enumerate(layout.columns):
         if column.kind == NUMBERS:
-            found[place] = next(stored)
+            numbers = next(stored)
+            found[place] = numbers if column.others else as_printed(numbers, column.format)
         elif column.kind == SAME:
             found[place] = np.full(len(values), _number(column.text))
         elif column.kind == SERIES and len(values) == layout.rows:
