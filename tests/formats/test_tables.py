@@ -1,6 +1,7 @@
 """Tables of numbers come back byte for byte in every dialect, and say what they hold."""
 
 import random
+import warnings
 from fractions import Fraction
 from pathlib import Path
 
@@ -78,7 +79,8 @@ def test_a_table_of_all_sorts_of_columns() -> None:
     data = odd_table()
     layout = layout_of(data)
     assert layout.verbatim == {61: b"broken,row"}
-    clip = mp.read(Path(__file__).parents[1] / "golden/v1_odd.csv")
+    with pytest.warns(mp.MotionWarning, match="line 64: a row of another length"):
+        clip = mp.read(Path(__file__).parents[1] / "golden/v1_odd.csv", strict=False)
     assert clip.frame_time == Fraction(1, 50)
     assert np.isnan(clip.values[50]).any()
     assert mp.decompress(mp.compress(data)) == data
@@ -137,3 +139,35 @@ def test_markers_are_written(tmp_path: Path) -> None:
     mp.write(clip, tmp_path / "again.c3d")
     floats = mp.read(tmp_path / "again.c3d").streams["points"].values
     assert np.allclose(floats, clip.values, equal_nan=True, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "fault"),
+    [
+        (b"\n30\t", b"\n30\t1.5\t", "line 36: a row of another length.*14 cells; found 15"),
+        (b"\n30\t", b"\nabc\r\n30\t", "line 36: a row of another length.*14 cells; found 1"),
+        (b"\n30\t0.242\t", b"\n30\t0.242\tx", "line 36: a cell that is no number"),
+    ],
+)
+def test_rows_that_are_broken_are_named_and_cost_no_others(
+    old: bytes, new: bytes, fault: str
+) -> None:
+    places = markers()
+    data = trc(places).replace(old, new, 1)
+    assert data != trc(places)
+    assert mp.decompress(mp.compress(data)) == data
+    for read in (mp.read, mp.load):
+        source = data if read is mp.read else mp.compress(data)
+        with pytest.raises(mp.FormatError, match=fault):
+            read(source)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", mp.MotionWarning)
+            clip = read(source, strict=False)
+        assert clip.frames in (149, 150)
+        assert np.allclose(clip.values[:28], np.round(places[:28], 5), equal_nan=True)
+        assert np.allclose(clip.values[-9:], np.round(places[-9:], 5), equal_nan=True)
+
+
+def test_what_stands_behind_a_table_is_named() -> None:
+    with pytest.warns(mp.MotionWarning, match="something behind the last row"):
+        assert mp.read(trc(markers()) + b"end of file\r\n").frames == 150
