@@ -359,6 +359,25 @@ def test_bench_writes_rows_for_machines(samples: Path, tmp_path: Path) -> None:
     assert "| gzip -9 |" in result.stdout
 
 
+def test_bench_counts_what_compress_makes(samples: Path, tmp_path: Path) -> None:
+    short = tmp_path / "short.bvh"  # so short that a general-purpose compressor makes less of it
+    lines = (samples / "freebvh.bvh").read_bytes().splitlines(keepends=True)
+    frames = next(i for i, line in enumerate(lines) if line.startswith(b"Frames:"))
+    lines[frames] = b"Frames: 1\n"
+    short.write_bytes(b"".join(lines[: frames + 3]))
+    shutil.copy(samples / "cmu_01_01.asf", tmp_path / "walk.asf")
+    amc = (samples / "cmu_01_01.amc").read_bytes()
+    (tmp_path / "walk.amc").write_bytes(amc[: amc.index(b"\n40\r\n") + 1])
+    files = [short, samples / "freebvh.bvh", tmp_path / "walk.amc"]
+    for number, file in enumerate(files):
+        rows = tmp_path / f"{number}.json"
+        words = ("bench", "lossless", file, "--only", "exact:level=3", "--json", rows)
+        assert mocapress(*words).exit_code == 0
+        (row,) = json.loads(rows.read_text())
+        assert row["compressed_bytes"] == len(mp.compress(file, "exact:level=3"))
+        assert (row["payload_bytes"] == 0) == (file == short)
+
+
 def test_version_and_help() -> None:
     assert process("--version").stdout.decode().strip() == f"mocapress {mp.__version__}"
     helped = mocapress("--help").stdout
