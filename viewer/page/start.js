@@ -13,7 +13,16 @@ async function unpacked(id) {
   const packed = atob(document.getElementById(id).textContent);
   const bytes = Uint8Array.from(packed, (character) => character.charCodeAt(0));
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Response(stream).json();
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+const json = (bytes) => JSON.parse(new TextDecoder().decode(bytes));
+
+// Names and sizes in a line, then the files.
+function filesOf(bytes) {
+  let at = bytes.indexOf(10);
+  const sizes = json(bytes.subarray(0, at++));
+  return Object.fromEntries(sizes.map(([name, size]) => [name, bytes.slice(at, (at += size))]));
 }
 
 const inWorker = `
@@ -27,7 +36,8 @@ onmessage = async ({ data }) => {
   }
 };`;
 
-const [modules, assets] = await Promise.all(["modules", "assets"].map(unpacked));
+const [code, carried] = await Promise.all(["modules", "assets"].map(unpacked));
+const [modules, assets] = [json(code), filesOf(carried)];
 const worker = new Worker(URL.createObjectURL(new Blob([inWorker], { type: "text/javascript" })));
 worker.postMessage({ modules, assets });
 const { start } = await load(modules, "page/main.js");

@@ -81,13 +81,15 @@ def document(
         f"{_about(served=served, library=library)}"
         f"<title>{_escaped(title)}</title>\n<style>{_text('page/style.css')}</style>"
     )
-    carried = encoded(asset_names() if assets is None else assets)
+    carried = binary_files(asset_names() if assets is None else assets)
     vendored = ["three", "xz"] if _XZ in carried else ["three"]
     licences = "\n".join(_text(f"vendor/{name}/LICENSE") for name in vendored)
+    code = _packed(_json([*modules().items()]))
+    files = _packed(_one_behind_the_other(carried))
     body = (
         f'<script type="application/json" id="clips">{motion}</script>\n'
-        f'<script type="application/gzip" id="modules">{_packed([*modules().items()])}</script>\n'
-        f'<script type="application/gzip" id="assets">{_packed(carried)}</script>\n'
+        f'<script type="application/gzip" id="modules">{code}</script>\n'
+        f'<script type="application/gzip" id="assets">{files}</script>\n'
         f'<script type="module">{_text(_START)}</script>\n'
         f"<!--\n{licences}-->"
     )
@@ -139,20 +141,29 @@ def lent(path: str) -> Answer | None:
     return None if kind is None else Answer((SOURCES / path[1:]).read_bytes(), kind)
 
 
-def encoded(names: Collection[str]) -> dict[str, str]:
-    """Give binary files in base64."""
+def binary_files(names: Collection[str]) -> dict[str, bytes]:
+    """Give the contents of binary files."""
     container = resources.files("mocapress.container")
     made = {}
     for name in names:
         file = container.joinpath(name) if name == _DICTIONARY else SOURCES / name
-        made[name] = base64.b64encode(file.read_bytes()).decode()
+        made[name] = file.read_bytes()
     return made
 
 
-def _packed(content: Any) -> str:
-    """Give JSON in gzip and base64."""
-    text = json.dumps(content).encode()
-    return base64.b64encode(gzip.compress(text, mtime=0)).decode()
+def _one_behind_the_other(files: dict[str, bytes]) -> bytes:
+    """Give names and sizes in a line of JSON, and then the files; ``page/start.js`` reads them."""
+    sizes = [(name, len(data)) for name, data in files.items()]
+    return b"\n".join([_json(sizes), b"".join(files.values())])
+
+
+def _json(content: Any) -> bytes:
+    return json.dumps(content).encode()
+
+
+def _packed(content: bytes) -> str:
+    """Give bytes in gzip and base64."""
+    return base64.b64encode(gzip.compress(content, mtime=0)).decode()
 
 
 def modules() -> dict[str, str]:

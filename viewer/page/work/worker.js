@@ -9,7 +9,7 @@ import { placed } from "./placing.js";
 let assets;
 let library;
 
-/** @param {Object<string, string>} carried the page's binary files, in base64 */
+/** @param {Object<string, Uint8Array>} carried the page's binary files */
 export function begin(carried) {
   assets = new Assets((path) => {
     if (!Object.hasOwn(carried, path)) {
@@ -18,7 +18,7 @@ export function begin(carried) {
         found: path,
       });
     }
-    return Uint8Array.from(atob(carried[path]), (character) => character.charCodeAt(0));
+    return carried[path];
   });
 }
 
