@@ -17,7 +17,8 @@ def view(
     files: Annotated[
         list[Path] | None,
         typer.Argument(
-            help="Motion files; given two, the second is compared with the first. Or one library."
+            help="Motion files, .mcz, folders, or one library; given two files, the second is "
+            "compared with the first."
         ),
     ] = None,
     export: Annotated[
@@ -54,10 +55,10 @@ def view(
     from mocapress.viewer import embed, page
     from mocapress.viewer.server import nothing
 
-    inputs = files or []
-    if any(path.suffix.lower() == ".mocapdb" for path in inputs):
-        _serve_library(inputs, export, port, browser=browser, strict=not lenient, debug=debug)
+    if any(path.suffix.lower() == ".mocapdb" for path in files or []):
+        _serve_library(files or [], export, port, browser=browser, strict=not lenient, debug=debug)
         return
+    inputs = _found(files or [])
     refuse_other_kinds(str(export) if export else None, (".html",), known_endings())
     stated = max_error if export else None
     name = ""
@@ -95,6 +96,15 @@ def view(
         print(f"{export}: {len(document.encode())} bytes, {_exactness(stated)}")
     else:
         _serve(document, port, browser=browser, more=nothing)
+
+
+def _found(paths: list[Path]) -> list[Path]:
+    """Give the files that were named, and those below folders that were."""
+    from mocapress.cli.batch import find
+    from mocapress.formats import readable, suffixes
+
+    of_motion = suffixes(of for of in readable() if of.read_skeleton is None)
+    return [job.source for job in find(paths, (*of_motion, ".mcz"))] if paths else []
 
 
 def _serve_library(
