@@ -62,5 +62,6 @@ void bind_rows(nb::module_& module);
 void bind_app(nb::module_& module);
 void bind_exact(nb::module_& module);
 void bind_diffma(nb::module_& module);
+void bind_mrpa(nb::module_& module);
 
 }  // namespace mocapress

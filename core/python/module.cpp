@@ -10,4 +10,5 @@ NB_MODULE(_core, module) {
   mocapress::bind_app(module);
   mocapress::bind_exact(module);
   mocapress::bind_diffma(module);
+  mocapress::bind_mrpa(module);
 }
