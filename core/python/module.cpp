@@ -11,4 +11,5 @@ NB_MODULE(_core, module) {
   mocapress::bind_exact(module);
   mocapress::bind_diffma(module);
   mocapress::bind_mrpa(module);
+  mocapress::bind_qssd_learning(module);
 }

@@ -297,3 +297,23 @@ def mrpa_refined(inputs: Annotated[NDArray[numpy.int64], dict(shape=(None, None)
     """
     Give the segments that learn from the inputs, (S, 2): first and last frames.
     """
+def code_by_products(turns: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], importance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], most: int, tolerance: float, sorted: bool) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
+    """
+    Code frames, (F, J, 4), by atoms, (K, J, 3): Algorithm 2.
+
+    Gives each frame's atoms, (F, most), -1 behind the last, and their weights.
+    """
+
+def learn_products(turns: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], importance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], atoms: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu')], weights: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """Improve ``dictionary`` and ``weights`` in place: Algorithm 3."""
+
+def combine_products(dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], atoms: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu')], weights: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None))]:
+    """Give the products of atoms, (F, J, 4): Eq. 3."""
+
+def code_by_sums(rows: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], most: int, tolerance: float) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
+    """
+    Code rows, (F, C), by atoms, (K, C), of length 1: orthogonal matching pursuit.
+    """
+
+def learn_sums(rows: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], atoms: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu')], weights: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """Improve ``dictionary`` and ``weights`` in place: Algorithm 1."""

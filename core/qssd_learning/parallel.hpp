@@ -1,0 +1,25 @@
+// All processors on slices of one range.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <thread>
+#include <vector>
+
+namespace mocapress::qssd {
+
+// Calls work(first, last) for slices of [0, count); none of fewer than `least`.
+template <class Work>
+void in_parallel(std::size_t count, std::size_t least, const Work& work) {
+  const std::size_t most = std::max<std::size_t>(std::thread::hardware_concurrency(), 1);
+  const std::size_t slices =
+      std::clamp<std::size_t>(count / std::max<std::size_t>(least, 1), 1, most);
+  std::vector<std::thread> others;
+  for (std::size_t s = 1; s < slices; ++s) {
+    others.emplace_back(work, count * s / slices, count * (s + 1) / slices);
+  }
+  work(0, count / slices);
+  for (auto& other : others) other.join();
+}
+
+}  // namespace mocapress::qssd

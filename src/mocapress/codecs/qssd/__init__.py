@@ -1,0 +1,5 @@
+"""QSSD: quaternion space sparse decomposition.
+
+M. Zhu, H. Sun, Z. Deng: "Quaternion Space Sparse Decomposition for Motion Compression and
+Retrieval", Computer Graphics Forum 31 (2012).
+"""
