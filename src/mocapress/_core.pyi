@@ -297,6 +297,7 @@ def mrpa_refined(inputs: Annotated[NDArray[numpy.int64], dict(shape=(None, None)
     """
     Give the segments that learn from the inputs, (S, 2): first and last frames.
     """
+
 def code_by_products(turns: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], importance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], most: int, tolerance: float, sorted: bool) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
     """
     Code frames, (F, J, 4), by atoms, (K, J, 3): Algorithm 2.

@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from running import mocapress
 
 import mocapress as mp
 from mocapress.codecs.mrpa import together
-from mocapress.errors import CorruptError, VerificationError
+from mocapress.errors import CorruptError, MotionWarning, VerificationError
 from mocapress.library import Library, open_library
 
 pytest.importorskip("cv2")
@@ -34,7 +35,7 @@ def takes() -> dict[str, bytes]:
     return {name: bvh_of(values) for name, values in parts.items()}
 
 
-def bvh_of(values: np.ndarray) -> bytes:  # type: ignore[type-arg]
+def bvh_of(values: NDArray[np.float64]) -> bytes:
     joints = [f"JOINT J{i}\n{{\nOFFSET 0 1 0\nCHANNELS 1 Xrotation\n" for i in range(9)]
     head = "HIERARCHY\nROOT hips\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n" + "".join(joints)
     tail = "End Site\n{\nOFFSET 0 1 0\n}\n" + "}\n" * 10
@@ -251,7 +252,8 @@ def test_forged_needs_cost_an_error(library: Library, files: dict[str, bytes], c
             again.read_bytes("b.bvh")
         assert again.read_bytes("a.bvh") == files["a.bvh"]
         assert "b.bvh" in {fault.name for fault in again.verify()}
-        kept = again.load("b.bvh", errors="skip", strict=False)
+        with pytest.warns(MotionWarning, match="lost"):
+            kept = again.load("b.bvh", errors="skip", strict=False)
         assert kept.frames == mp.read(files["b.bvh"]).frames
 
 
@@ -278,7 +280,43 @@ def test_the_command_codes_all_together(library: Library, files: dict[str, bytes
     library.close()
     result = mocapress("library", "recompress", path, "--codec", "mrpa", "--json")
     assert result.exit_code == 0, result.output
-    assert {"a.bvh", "b.bvh"} <= {row["source"] for row in json.loads(result.stdout)}
+    assert {"a.bvh", "b.bvh"} <= {row["file"] for row in json.loads(result.stdout)}
     with open_library(path) as again:
         assert needs(again)
         sound(again, files)
+
+
+def test_patterns_name_what_was_repeated(
+    library: Library, files: dict[str, bytes], tmp_path: Path
+) -> None:
+    path = str(library.path)
+    library.close()
+    result = mocapress("library", "patterns", path, "--json")
+    assert result.exit_code == 0, result.output
+    (group,) = json.loads(result.stdout)
+    pairs = {(pair["clip"], pair["like"]["clip"]): pair for pair in group["pairs"]}
+    own = pairs["b.bvh", "a.bvh"]
+    assert own["first"] <= 20
+    assert own["last"] >= 680
+    assert abs(own["like"]["first"] - 200 - own["first"]) <= 2
+    assert own["distance"] < group["radius"]
+    assert group["clips"] == sorted(files)
+
+    pytest.importorskip("matplotlib")
+    result = mocapress("library", "patterns", path, "--pictures", tmp_path / "pictures")
+    assert result.exit_code == 0, result.output
+    assert "b.bvh 0-699  like  a.bvh 200-899" in result.stdout
+    for name in ("paths_1.png", "forest_1.png"):
+        assert (tmp_path / "pictures" / name).read_bytes().startswith(b"\x89PNG")
+    again = mocapress("library", "patterns", path, "--pictures", tmp_path / "pictures")
+    assert again.exit_code == 1
+    assert "exists" in again.output
+
+
+def test_a_library_without_motion_has_no_patterns(library: Library) -> None:
+    library.add(b"no motion", "notes.txt")
+    path = str(library.path)
+    library.close()
+    result = mocapress("library", "patterns", path)
+    assert result.exit_code == 0
+    assert result.stdout == "no motion\n"

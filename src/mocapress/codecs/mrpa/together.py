@@ -80,10 +80,27 @@ def published_spans(found: Patterns, depth: int) -> list[Span]:
 
 def best_spans(found: Patterns, chunk: int) -> list[Span]:
     """Give chunks of so many frames, with the paths to frames before them, the deepest first."""
-    relations = sorted(_covering(found), key=lambda relation: relation.first)
+    return spans_of(covering(found), found.starts, chunk)
+
+
+def spans_of(relations: Sequence[Relation], starts: NDArray[np.int64], chunk: int) -> list[Span]:
+    """Give chunks of so many frames, with their parts of relations that lead back in time.
+
+    Parameters
+    ----------
+    relations
+        None of which have frames in common; the frames of each follow each other in one clip, and
+        so do those that predict them.
+    starts
+        (clips + 1,) first frame of each clip.
+    chunk
+        Frames.
+
+    """
+    relations = sorted(relations, key=lambda relation: relation.first)
     spans = []
     at = 0
-    for start, end in zip(found.starts[:-1].tolist(), found.starts[1:].tolist(), strict=True):
+    for start, end in zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True):
         for first in range(start, end, chunk):
             stop = min(first + chunk, end)
             inside = []
@@ -102,7 +119,7 @@ def best_spans(found: Patterns, chunk: int) -> list[Span]:
     return spans
 
 
-def _covering(found: Patterns) -> list[Relation]:
+def covering(found: Patterns) -> list[Relation]:
     """Choose paths back in time so that no frame is in two, the deepest first."""
     paths = found.paths
     h, v = paths.h, paths.v
