@@ -298,6 +298,36 @@ def mrpa_refined(inputs: Annotated[NDArray[numpy.int64], dict(shape=(None, None)
     Give the segments that learn from the inputs, (S, 2): first and last frames.
     """
 
+class NearMeasure:
+    """In what errors of `near` are measured."""
+
+def near_measure(skeleton: object | None, columns: Sequence[tuple[int, str]], radians: bool, radius: float, others: Sequence[float]) -> NearMeasure:
+    """
+    Measure at points ``radius`` along the joints' axes, or values without a skeleton.
+
+    ``others``: what an error of 1 counts in each channel that moves no joint.
+    """
+
+def near_levers(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], weights: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None,))]:
+    """Give the mean square of how far each channel moves the points, (C,)."""
+
+def near_errors(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], others: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
+    """
+    Give the errors of joints, (F, J), or without a skeleton of values, (F, C).
+    """
+
+def near_columns(apart: Sequence[int], joints: Sequence[int], parents: Sequence[int]) -> bytes:
+    """Code what columns have of their own, for the header."""
+
+def near_encode(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, scale: float, rate: float, weights: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], most: float, value_most: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], rounds: int) -> tuple[bytes, Annotated[NDArray[numpy.float64], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
+    """
+    Code rows as a chunk: its payload, the values that it decodes to, and the errors of
+    joints, (F, J), or without a skeleton of values, (F, C).
+    """
+
+def near_decode(header: bytes, payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """Fill ``values`` from a chunk; ValueError where it is none."""
+
 def code_by_products(turns: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], importance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], most: int, tolerance: float, sorted: bool) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
     """
     Code frames, (F, J, 4), by atoms, (K, J, 3): Algorithm 2.

@@ -67,6 +67,7 @@ _REGISTRY: dict[str, tuple[str, str]] = {
     "app": ("mocapress.codecs.app", "App"),
     "diffma": ("mocapress.codecs.diffma", "DiffMA"),
     "mrpa": ("mocapress.codecs.mrpa", "Mrpa"),
+    "near": ("mocapress.codecs.near", "Near"),
 }
 
 

@@ -143,27 +143,6 @@ def to_amc_clip(clip: Clip) -> Clip:
     return _finish(clip, made, values, NumberFormat(NumberKind.GENERAL, 9))
 
 
-def suggest_unit(skeleton: Skeleton) -> str | None:
-    """Say what unit the lengths of bones suggest, from the size of the figure at rest."""
-    if skeleton.length_unit not in (None, 1.0):
-        return f"1 unit is {2.54 / skeleton.length_unit:.4g} cm, as the ASF's length says"
-    places: list[Array] = []
-    for joint in skeleton.joints:
-        start = places[joint.parent] if joint.parent >= 0 else np.zeros(3)
-        places.append(start + (np.array(joint.offset) if joint.parent >= 0 else 0))
-    ends = [
-        places[i] + np.array(end) for i, joint in enumerate(skeleton.joints) for end in joint.ends
-    ]
-    extent = float(np.ptp(np.stack(places + ends), axis=0).max())
-    # A figure at rest is some 1.7 m high, or as wide with its arms out.
-    for unit, metres in (("m", 1), ("cm", 0.01), ("mm", 0.001), ("inches", 0.0254)):
-        if 1.3 <= extent * metres <= 2.3:
-            return f"{unit} (the figure measures {extent:.4g})"
-    if 1.3 <= extent * 0.0254 / 0.45 <= 2.3:
-        return f"CMU's, 5.644 cm (the figure measures {extent:.4g})"
-    return None
-
-
 def _skeleton(clip: Clip) -> Skeleton:
     if clip.skeleton is None:
         raise UnsupportedError("no skeleton", expected="one beside the file, or given (--asf)")
