@@ -101,7 +101,7 @@ def to_bvh_clip(clip: Clip, fps: float | None = None) -> Clip:
         for i, joint in enumerate(skeleton.joints)
     )
     made = Skeleton(joints, "moving", "deg", skeleton.length_unit, skeleton.name)
-    angles = _zyx_degrees(local_rotations(clip))
+    angles = zyx_degrees(local_rotations(clip))
     values = [
         np.concatenate([placed[:, i], angles[:, i]] if moves[i] else [angles[:, i]], axis=1)
         for i in range(len(joints))
@@ -128,7 +128,7 @@ def to_amc_clip(clip: Clip) -> Clip:
     if sum(joint.parent < 0 for joint in skeleton.joints) != 1:
         raise UnsupportedError("an ASF has one root", expected="1")
     placed = translations(clip)
-    angles = _zyx_degrees(local_rotations(clip))[..., ::-1]
+    angles = zyx_degrees(local_rotations(clip))[..., ::-1]
     # The root's place is all in its channels; ASF's translations add to the offset.
     places = _rest_places(skeleton, placed)
     moves = [i == 0 or _varies(placed[:, i]) for i in range(len(skeleton.joints))]
@@ -214,7 +214,7 @@ def _finish(clip: Clip, skeleton: Skeleton, values: list[Array], number: NumberF
     return Clip.of(matrix, columns, clip.frame_time, skeleton, clip.name)
 
 
-def _zyx_degrees(turn: Array) -> Array:
+def zyx_degrees(turn: Array) -> Array:
     """Give angles z, y, x with turn = Rz Ry Rx, (..., 4) to (..., 3), continuous over frames."""
     w, x, y, z = np.moveaxis(turn, -1, 0)
     sine = np.clip(2 * (w * y - x * z), -1, 1)
