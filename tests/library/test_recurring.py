@@ -207,6 +207,22 @@ def test_a_clip_comes_out_as_a_file_of_its_own(
     library.close()
 
 
+def test_a_library_of_version_1_takes_it_over(library: Library, files: dict[str, bytes]) -> None:
+    path = library.path
+    library.close()
+    with sqlite3.connect(path) as connection:
+        connection.execute("DROP TABLE needs")
+        connection.execute("DELETE FROM migrations WHERE version = 2")
+        connection.execute("PRAGMA user_version = 1")
+    connection.close()
+    with open_library(path) as again:
+        sound(again, files)
+    with open_library(path, "a") as again:
+        again.recompress_together(list(files), "mrpa")
+        assert needs(again)
+        sound(again, files)
+
+
 def test_what_does_not_come_back_is_not_written(
     library: Library, files: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
 ) -> None:
