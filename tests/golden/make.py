@@ -98,7 +98,7 @@ ASF = b""":version 1.10
 """
 
 WALK_AMC, WALK_LF, WALK_BVH = amc("\r\n").encode(), amc("\n").encode(), (BVH + bvh_rows()).encode()
-# What is compressed, and how; all but the bytes have at least three chunks. NAME.mcz holds NAME.
+# What is compressed, and how; of each codec some have at least three chunks. NAME.mcz holds NAME.
 FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_walk.amc": (WALK_AMC, "app:chunk=75", {}),
     "v1_walk_lf.amc": (

@@ -29,8 +29,8 @@ def as_floats(numbers: Values, number_format: NumberFormat) -> Values:
 
 
 def as_printed(numbers: Values, number_format: NumberFormat) -> Values:
-    """Give the numbers that stand in the file, of those that ``as_floats`` gave, (N,)."""
-    if number_format.kind not in _DECIMAL or not _is_coarser(numbers, number_format):
+    """Give the numbers that stand in the file, of any that ``as_floats`` gave, (N,)."""
+    if number_format.kind not in _DECIMAL:
         return numbers
     with np.errstate(over="ignore", invalid="ignore"):
         floats = numbers.astype(np.float32).astype(np.float64)
