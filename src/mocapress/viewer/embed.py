@@ -144,6 +144,8 @@ def as_coded(mcz: Mcz, clip: Clip) -> bytes | None:
         return None
     if stream is None or not known or stream.model or not mcz.closed:
         return None
+    if any(entry.dependent for entry in mcz.of_stream[0]):
+        return None
     parts: list[bytes] = []
     writer = MczWriter(parts.append)
     writer.head(Head((replace(stream, columns=clip.columns),), clip.skeleton))

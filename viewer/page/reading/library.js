@@ -4,7 +4,7 @@ import { FileError } from "./file_error.js";
 import { readOpened } from "./mcz.js";
 
 const APPLICATION_ID = 0x4d435a4c;
-const VERSION = 1;
+const VERSION = 2;
 const TABLES = ["clips", "chunks", "runs", "texts", "skeletons", "labels", "models"];
 const [JOURNAL, NOT_WAL] = [18, 1]; // where the header says that there is a write-ahead log
 
@@ -57,8 +57,9 @@ export class SqliteLibrary {
     const found = this.#said(() => this.db.selectValue("PRAGMA application_id"));
     if (found !== APPLICATION_ID) throw new FileError("not a library");
     const version = this.db.selectValue("PRAGMA user_version");
-    if (version !== VERSION) {
-      throw new FileError("version of the library", { expected: VERSION, found: version });
+    if (!(version >= 1 && version <= VERSION)) {
+      const expected = `1 to ${VERSION}`;
+      throw new FileError("version of the library", { expected, found: version });
     }
     // A view may compute for ever, a table may not.
     const tables = this.db.selectValues("SELECT name FROM sqlite_schema WHERE type = 'table'");
