@@ -58,7 +58,9 @@ Given<Element> give(std::vector<Element> data) {
 void bind_c3d(nb::module_& module);
 void bind_formats(nb::module_& module);
 void bind_motion(nb::module_& module);
+void bind_record(nb::module_& module);
 void bind_rows(nb::module_& module);
+void bind_table(nb::module_& module);
 void bind_app(nb::module_& module);
 void bind_exact(nb::module_& module);
 void bind_diffma(nb::module_& module);

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapress.api.clips import compress_clip
-from mocapress.api.compressing import compress_parts, motion_file, stored_name, unfit
+from mocapress.api.clips import compress_clip, stored_name
+from mocapress.api.compressing import compress_parts, motion_file, unfit
 from mocapress.api.encoding import coded_streams
 from mocapress.api.opening import Opened
 from mocapress.api.restoring import contents
