@@ -10,5 +10,6 @@ NB_MODULE(_core, module) {
   mocapress::bind_app(module);
   mocapress::bind_exact(module);
   mocapress::bind_diffma(module);
+  mocapress::bind_qssd(module);
   mocapress::bind_qssd_learning(module);
 }
