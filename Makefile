@@ -6,16 +6,22 @@ BIN := $(VENV)/bin
 CORPUS_SOURCE := ../shared/data
 SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -Icore
 FUZZ_RUNS ?= 20000
+JOBS := $(shell getconf _NPROCESSORS_ONLN)
 sources := $(wildcard core/*/*.cpp core/*/*.hpp)
 headers := $(filter %.hpp,$(sources)) $(wildcard core/exact/data/*)
 kernels := $(filter-out core/python/% core/wasm/% core/check/% core/fuzz/%,$(filter %.cpp,$(sources)))
 
-.PHONY: demo test long check stub tests test-js browser compilers wasm sanitize bench wheel clean
+.PHONY: demo demo-runs test long check stub tests test-js browser compilers wasm sanitize fuzz bench wheel clean
 
 demo: $(VENV)/.installed
 	@PYTHONPATH=benchmarks $(BIN)/python -m mocapress_bench demo
 
-test: check sanitize test-js tests
+test: check sanitize test-js demo-runs tests
+
+# The demo, seen only where it fails.
+demo-runs: $(VENV)/.installed
+	@mkdir -p build
+	@$(MAKE) --no-print-directory demo >build/demo.log 2>&1 || { cat build/demo.log; exit 1; }
 
 # What takes too long for every test run: 1,000 kills at random moments, then one before every call.
 long: $(VENV)/.built corpus
@@ -41,25 +47,31 @@ stub: $(VENV)/.built
 
 tests: $(VENV)/.built $(if $(CI),$(VENV)/.zig) corpus browser compilers
 	MOCAPRESS_CORPUS=$(if $(wildcard corpus/.version),$(CURDIR)/corpus,$(MOCAPRESS_CORPUS)) \
-	    $(BIN)/pytest
+	    $(BIN)/pytest -n auto --dist worksteal --durations 20
 
 # The decoders under AddressSanitizer and UBSan, on seeds and mutations of them; what a run prints
 # repeats it: make sanitize FUZZ_SEED=N.
 fuzz_targets := $(filter-out core/fuzz/driver.cpp,$(wildcard core/fuzz/*.cpp))
 fuzzers := $(patsubst core/fuzz/%.cpp,build/fuzz/%,$(fuzz_targets))
 
-sanitize: $(fuzzers) $(VENV)/.built
+sanitize: $(VENV)/.built
+	@$(MAKE) --no-print-directory -j $(JOBS) $(fuzzers)
+	@$(MAKE) --no-print-directory -j $(JOBS) --output-sync=target fuzz
+
+fuzz: $(fuzzers:%=%.fuzzed) build/fuzz/container.fuzzed
+
+build/fuzz/container.fuzzed:
 	$(BIN)/python core/fuzz/container.py -runs=$$(($(FUZZ_RUNS) / 10)) $(FUZZ_SEED:%=-seed=%)
-	@for target in $(fuzzers); do echo $$target; \
-	    $$target $$(ls -d core/fuzz/seeds/$$(basename $$target)/* 2>/dev/null) -runs=$(FUZZ_RUNS) $(FUZZ_SEED:%=-seed=%) \
-	    || exit 1; done
+
+build/fuzz/%.fuzzed: build/fuzz/%
+	$< $(wildcard core/fuzz/seeds/$*/*) -runs=$(FUZZ_RUNS) $(FUZZ_SEED:%=-seed=%)
 
 $(fuzzers): build/fuzz/%: build/fuzz/core/fuzz/%.o build/fuzz/core/fuzz/driver.o $(kernels:%.cpp=build/fuzz/%.o)
-	$(CXX) $(SANITIZE) $^ -o $@
+	@$(CXX) $(SANITIZE) $^ -o $@
 
 build/fuzz/%.o: %.cpp $(headers)
 	@mkdir -p $(@D)
-	$(CXX) $(SANITIZE) -c $< -o $@
+	@$(CXX) $(SANITIZE) -Wno-psabi -c $< -o $@
 
 test-js: browser
 	@if command -v node >/dev/null; then node --test tests/viewer/*.test.mjs; \

@@ -1,5 +1,6 @@
 """What the README shows works as shown."""
 
+import doctest
 import re
 import shutil
 from pathlib import Path
@@ -52,6 +53,13 @@ def test_the_guide_to_libraries_runs(tmp_path: Path, monkeypatch: pytest.MonkeyP
     exec("\n".join(re.findall(r"```python\n(.*?)```", guide, re.DOTALL)), {})
 
 
+def test_the_guide_to_markers_says_what_comes_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    found = doctest.testfile(str(ROOT / "docs/guide/markers.md"), module_relative=False)
+    assert found.attempted > 2
+    assert not found.failed
+
+
 def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for suffix in ("amc", "asf"):
         shutil.copy(ROOT / f"samples/cmu_01_01.{suffix}", tmp_path / f"walk.{suffix}")
@@ -71,6 +79,25 @@ def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         result = CliRunner().invoke(app, words)
         assert result.exit_code == 0, (command, result.output)
     assert Path("walk.amc").read_bytes() == Path("original.amc").read_bytes()
+
+
+def test_the_guide_to_the_command_line_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "clips").mkdir()
+    shutil.copy(ROOT / "samples/freebvh.bvh", tmp_path / "clips")
+    for suffix in ("amc", "asf"):
+        shutil.copy(ROOT / f"samples/cmu_01_01.{suffix}", tmp_path / f"walk.{suffix}")
+    monkeypatch.chdir(tmp_path)
+    guide = (ROOT / "docs/guide/commands.md").read_text()
+    commands = re.findall(r"^\$ mocapress (.*?)(?:  +#.*)?$", guide, re.MULTILINE)
+    assert len(commands) > 8
+    CliRunner().invoke(app, ["-1", "walk.amc"])
+    for command in commands:
+        result = CliRunner().invoke(app, command.split())
+        assert result.exit_code == 0, (command, result.output)
+    restored = tmp_path / "back/freebvh.bvh"
+    assert restored.read_bytes() == (ROOT / "samples/freebvh.bvh").read_bytes()
 
 
 def test_every_codec_is_in_the_readme_and_the_format() -> None:

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "coding/record.hpp"
+#include "formats/c3d.hpp"
 #include "formats/motion_file.hpp"
 #include "formats/text.hpp"
 #include "wasm/json.hpp"
@@ -104,6 +105,39 @@ void say_bones(Json& json, ByteView told, bool radians, const Skeleton& skeleton
   say(json, skeleton);
 }
 
+void say(Json& json, std::string_view name, const C3dFrames& frames) {
+  json.key(name).open('[');
+  for (const std::uint64_t number : {frames.begin, frames.count, frames.numbers}) {
+    json.whole(static_cast<std::int64_t>(number));
+  }
+  json.close(']');
+}
+
+void say(Json& json, const C3dLayout& layout) {
+  const auto say_whole = [&](std::string_view name, std::uint64_t number) {
+    json.key(name).whole(static_cast<std::int64_t>(number));
+  };
+  json.open('{');
+  say_whole("processor", static_cast<std::uint64_t>(layout.processor));
+  json.key("floats").word(layout.floats ? "true" : "false");
+  say_whole("announced", layout.announced);
+  say_whole("points", layout.points);
+  say_whole("analog", layout.analog);
+  say_whole("samples", layout.samples);
+  say(json, "frames", layout.frames);
+  say(json, "rotations", layout.rotations);
+  json.key("parameters").list(layout.parameters, [&](const C3dParameter& parameter) {
+    json.open('{').key("group").whole(parameter.group);
+    json.key("isGroup").word(parameter.is_group ? "true" : "false");
+    json.key("name").text(parameter.name).key("type").whole(parameter.type);
+    json.key("dimensions").list(parameter.dimensions, [&](std::uint8_t size) { json.whole(size); });
+    say_whole("begin", parameter.begin);
+    say_whole("size", parameter.size);
+    json.close('}');
+  });
+  json.close('}');
+}
+
 template <class Work>
 const char* answer(std::optional<std::string_view> asf, Work work) {
   Json json;
@@ -150,6 +184,14 @@ extern "C" {
   return answer(all, [&](Json& json, const Skeleton* skeleton) {
     say_bones(json, told, radians, *skeleton);
   });
+}
+
+// Finds how a C3D of this size, which stands in the space, is laid out.
+[[clang::export_name("c3d")]] const char* mocapress_c3d(std::size_t size) {
+  Json json;
+  say(json, c3d_layout({reinterpret_cast<const std::uint8_t*>(space().data()), size}));
+  said = json.printed();
+  return said.data();
 }
 
 [[clang::export_name("said")]] std::size_t mocapress_said() { return said.size(); }

@@ -30,8 +30,20 @@ if TYPE_CHECKING:
     from mocapress.library import Library, StoredClip, open_library
     from mocapress.models import load_model, save_model, train
     from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton, Stream
+    from mocapress.motion.comparing import Difference, compare
     from mocapress.motion.convert import to_amc_clip, to_bvh_clip
+    from mocapress.motion.editing import concat, mirror, resample, retime
     from mocapress.motion.kinematics import positions, rotations
+    from mocapress.motion.markers import (
+        Event,
+        ForcePlate,
+        Markers,
+        Segments,
+        events,
+        force_plates,
+        markers,
+        segments,
+    )
     from mocapress.storage import ExistsError
 
 __all__ = [
@@ -39,16 +51,21 @@ __all__ = [
     "Clip",
     "Column",
     "CorruptError",
+    "Difference",
+    "Event",
     "ExistsError",
+    "ForcePlate",
     "FormatError",
     "Joint",
     "Library",
+    "Markers",
     "MissingModelError",
     "MocapressError",
     "Model",
     "MotionWarning",
     "NumberFormat",
     "ParameterError",
+    "Segments",
     "Skeleton",
     "StoredClip",
     "Stream",
@@ -56,15 +73,24 @@ __all__ = [
     "VerificationError",
     "__version__",
     "codec",
+    "compare",
     "compress",
+    "concat",
     "decompress",
+    "events",
+    "force_plates",
     "load",
     "load_model",
+    "markers",
+    "mirror",
     "open_library",
     "positions",
     "read",
+    "resample",
+    "retime",
     "rotations",
     "save_model",
+    "segments",
     "to_amc_clip",
     "to_bvh_clip",
     "to_json",
@@ -86,7 +112,22 @@ _LAZY = {
     **dict.fromkeys(
         ("Clip", "Column", "Joint", "NumberFormat", "Skeleton", "Stream"), "mocapress.motion"
     ),
+    **dict.fromkeys(("Difference", "compare"), "mocapress.motion.comparing"),
+    **dict.fromkeys(("concat", "mirror", "resample", "retime"), "mocapress.motion.editing"),
     **dict.fromkeys(("positions", "rotations"), "mocapress.motion.kinematics"),
+    **dict.fromkeys(
+        (
+            "Event",
+            "ForcePlate",
+            "Markers",
+            "Segments",
+            "events",
+            "force_plates",
+            "markers",
+            "segments",
+        ),
+        "mocapress.motion.markers",
+    ),
     **dict.fromkeys(("Library", "StoredClip", "open_library"), "mocapress.library"),
     **dict.fromkeys(("load_model", "save_model", "train"), "mocapress.models"),
 }

@@ -1,6 +1,7 @@
 """What ``mocapress info`` says of a clip or a ``.mcz`` file."""
 
 from collections.abc import Sequence
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -9,8 +10,17 @@ from mocapress.codecs import Encoded, Model
 from mocapress.container import diffma_json
 from mocapress.errors import MissingModelError
 from mocapress.models import Place, find_model
-from mocapress.motion import Clip
+from mocapress.motion import Clip, Stream
 from mocapress.motion.convert import suggest_unit
+from mocapress.motion.markers import (
+    ANALOG,
+    POINTS,
+    ROTATIONS,
+    Markers,
+    events,
+    force_plates,
+    markers,
+)
 from mocapress.source import Source
 
 
@@ -39,7 +49,41 @@ def describe_clip(clip: Clip, frames: int | None = None) -> dict[str, Any]:
         "skeleton_found": clip.metadata.get("skeleton_found"),
         "number_formats": ", ".join(sorted(kinds)) or None,
         "unit_suggested": (suggest_unit(skeleton) or "nothing usual") if skeleton else None,
+    } | _recorded(clip)
+
+
+def _recorded(clip: Clip) -> dict[str, Any]:
+    """Describe what a laboratory records: markers, and what is measured beside them."""
+    facts: dict[str, Any] = {
+        name: clip.metadata.get(name) for name in ("vendor", "encoding", "first_frame")
     }
+    if POINTS in clip.streams:
+        found = markers(clip)
+        facts |= {"markers": len(found.labels), "unit": found.unit or None, "rate": found.rate}
+        if found.valid.size:
+            facts["gaps"] = _gaps(found)
+    for name in (ANALOG, ROTATIONS):
+        if name in clip.streams:
+            facts[name] = _sampled(clip.streams[name], 17 if name == ROTATIONS else 1)
+    facts["events"] = len(events(clip)) or None
+    facts["force_plates"] = len(force_plates(clip)) or None
+    return facts
+
+
+def _gaps(found: Markers) -> str:
+    """Say how much of the markers is missing."""
+    missing = ~found.valid
+    never = int(missing.all(axis=0).sum())
+    some = int(missing.any(axis=0).sum()) - never
+    if not some and not never:
+        return "none"
+    said = f"{100 * float(missing.mean()):.3g} % of the points, {some} markers with gaps"
+    return f"{said}, {never} never seen" if never else said
+
+
+def _sampled(stream: Stream, columns: int) -> str:
+    rate = f" at {float(1 / Fraction(stream.frame_time)):.6g} Hz" if stream.frame_time else ""
+    return f"{stream.channels // columns}{rate}"
 
 
 def describe_model(model: Model, size: int) -> dict[str, Any]:
@@ -120,6 +164,8 @@ def describe_mcz(
     frames = mcz.frames()
     columns = api.load_source(source, slice(0), asf_path=asf_path, strict=strict)
     facts |= describe_clip(columns, frames)
+    if len(opened.streams) > 1:
+        facts |= _recorded(api.columns_of(opened))
     if frames and main.columns:
         facts["bits_per_sample"] = 8 * mcz.size / (frames * len(main.columns))
     codec = opened.codec()

@@ -42,6 +42,8 @@ JSON_SUFFIXES = (".diffma.json", ".diffma.json.xz")
 _MAGICS = {b"\x89MCZ": MCZ, b"\x89MCM": MCM}
 _XZ = b"\xfd7zXZ\x00"
 _HEAD = 2**16
+_MOST_BESIDE = 2**22
+"""Bytes of a file beside, of names and the like, that are read."""
 LIMIT = 2**32
 """Bytes that may be restored from a source, unless the user says otherwise."""
 
@@ -343,6 +345,33 @@ class Source:
         facts = {"skeleton": self.used.file, "skeleton_found": self.used.found}
         return replace(clip, metadata={**clip.metadata, **facts})
 
+    def described(self, of: Format, layout: object, clip: Clip) -> Clip:
+        """Give streams the names and units that a layout knows, or a file beside this one."""
+        if of.describe is None:
+            return clip
+        try:
+            return of.describe(layout, clip, self._near)
+        except FormatError as error:
+            if not error.file:
+                raise
+            error.what = f"is left away, because it does not fit: {error.what}"
+            self.warn("foreign-companion", error)
+            return of.describe(layout, clip, lambda _, __: None)
+
+    def _near(self, ending: str, instead: str) -> bytes | None:
+        """Give a file in the same folder whose name has another ending, of those without suffix."""
+        if self.path is None:
+            return None
+        stem = _without(self.path.name, (".mcz",))
+        stem = stem if stem.endswith(ending) else stem.rpartition(".")[0]
+        if not stem.endswith(ending):
+            return None
+        place = self.path.with_name(stem[: len(stem) - len(ending)] + instead)
+        try:
+            return Source(place).read(0, _MOST_BESIDE) if place.is_file() else None
+        except OSError:
+            return None
+
     def warn_of_guess(self) -> None:
         """Warn where the skeleton that was used was merely the only one in the folder."""
         if self.used is not None and self.used.found == ONLY_ONE:
@@ -431,7 +460,7 @@ def read(source: Source, asf_path: str | Path | None = None, *, strict: bool = T
     parts = source.split(asf_path)
     source.accept(parts.problems, strict=strict)
     source.warn_of_guess()
-    return of.describe(parts.stored, parts.clip) if of.describe else parts.clip
+    return source.described(of, parts.stored, parts.clip)
 
 
 _seeking = threading.Lock()

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from running import mocapress, process
 
@@ -45,7 +46,7 @@ def test_a_name_without_a_suffix_gets_that_of_the_original(walk: Path) -> None:
     walk.with_name("junk.mcz").write_bytes(b"no such file")
     result = mocapress("decompress", walk.with_name("junk.mcz"))
     assert result.exit_code == 1
-    assert "not a .mcz file" in result.stderr
+    assert "not compressed by mocapress" in result.stderr
 
 
 def test_nothing_is_overwritten_without_force(walk: Path) -> None:
@@ -102,14 +103,14 @@ def test_json_is_for_machines(walk: Path, tmp_path: Path) -> None:
         (["compress", "walk.amc", "--codec", "app", "--level", "3"], 2, "app has no levels"),
         (["compress", "walk.amc", "--level", "10"], 2, "10 is not in the range 1<=x<=9"),
         (["compress", "walk.amc", "--model", "no.mcm"], 1, "no.mcm: No such file"),
-        (["compress", "walk.amc", "--model", "walk.amc"], 1, "walk.amc, byte 0: not a .mcm file"),
+        (["compress", "walk.amc", "--model", "walk.amc"], 1, "walk.amc: not a model of mocapress"),
         (["compress", "walk.amc", "--codec", "app", "--model", "v1.mcm"], 2, "takes no model"),
         (["train", "walk.amc", "-o", "x.mcm", "--codec", "app"], 2, "app takes no model"),
         (["train", "walk.amc"], 2, "Missing option '-o'"),
         (["info", "walk.amc", "--model", "no.mcm"], 1, "no.mcm: No such file"),
         (["decompress", "walk.amc"], 2, "-o gives it"),
-        (["decompress", "walk.amc", "-o", "x"], 1, "not a .mcz file"),
-        (["verify", "walk.amc"], 3, "not a .mcz file"),
+        (["decompress", "walk.amc", "-o", "x"], 1, "not compressed by mocapress"),
+        (["verify", "walk.amc"], 3, "not compressed by mocapress"),
         (["info", "missing"], 1, "No such file"),
         (["convert", "walk.amc", "-o", "x.bvh"], 1, "no skeleton"),
         (["compress", "walk.amc", "--codec", "app", "-o", "x.diffma.json"], 2, "expected diffma"),
@@ -358,6 +359,25 @@ def test_bench_writes_rows_for_machines(samples: Path, tmp_path: Path) -> None:
     assert "| gzip -9 |" in result.stdout
 
 
+def test_bench_counts_what_compress_makes(samples: Path, tmp_path: Path) -> None:
+    short = tmp_path / "short.bvh"  # so short that a general-purpose compressor makes less of it
+    lines = (samples / "freebvh.bvh").read_bytes().splitlines(keepends=True)
+    frames = next(i for i, line in enumerate(lines) if line.startswith(b"Frames:"))
+    lines[frames] = b"Frames: 1\n"
+    short.write_bytes(b"".join(lines[: frames + 3]))
+    shutil.copy(samples / "cmu_01_01.asf", tmp_path / "walk.asf")
+    amc = (samples / "cmu_01_01.amc").read_bytes()
+    (tmp_path / "walk.amc").write_bytes(amc[: amc.index(b"\n40\r\n") + 1])
+    files = [short, samples / "freebvh.bvh", tmp_path / "walk.amc"]
+    for number, file in enumerate(files):
+        rows = tmp_path / f"{number}.json"
+        words = ("bench", "lossless", file, "--only", "exact:level=3", "--json", rows)
+        assert mocapress(*words).exit_code == 0
+        (row,) = json.loads(rows.read_text())
+        assert row["compressed_bytes"] == len(mp.compress(file, "exact:level=3"))
+        assert (row["payload_bytes"] == 0) == (file == short)
+
+
 def test_version_and_help() -> None:
     assert process("--version").stdout.decode().strip() == f"mocapress {mp.__version__}"
     helped = mocapress("--help").stdout
@@ -384,7 +404,10 @@ def test_shells_can_complete(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("_MOCAPRESS_COMPLETE", "complete_bash")
     monkeypatch.setenv("COMP_WORDS", "mocapress co")
     monkeypatch.setenv("COMP_CWORD", "1")
-    assert process().stdout.split() == [b"compress", b"convert"]
+    assert set(process().stdout.split()) == {b"compress", b"convert", b"compare", b"codecs"}
+    monkeypatch.setenv("COMP_WORDS", "mocapress compress --codec ex")
+    monkeypatch.setenv("COMP_CWORD", "3")
+    assert process().stdout.split() == [b"exact"]
 
 
 @pytest.mark.parametrize("ending", ["mcz", "diffma.json"])
@@ -426,3 +449,26 @@ def test_a_path_that_cannot_be_looked_at_is_no_defect(walk: Path, words: tuple[s
     (line,) = done.stderr.decode().splitlines()
     assert line.startswith("mocapress: ")
     assert line.endswith(f" {paths['LONG']}: File name too long")
+
+
+def test_info_tells_vendor_rates_and_gaps_of_markers() -> None:
+    for kind in ("c3d", "trc"):
+        (told,) = json.loads(mocapress("info", "--json", SAMPLES / f"markers.{kind}").stdout)
+        assert told["markers"] == 16
+        assert (told["unit"], told["rate"]) == ("mm", 120)
+        assert told["gaps"] == "0.625 % of the points, 1 markers with gaps"
+    (told,) = json.loads(mocapress("info", "--json", SAMPLES / "markers.c3d").stdout)
+    assert told["encoding"] == "Intel, floats"
+
+
+def test_markers_are_converted_to_every_kind_and_back(tmp_path: Path) -> None:
+    for kind in ("trc", "csv", "npz", "c3d"):
+        done = mocapress("convert", SAMPLES / "markers.c3d", "-o", tmp_path / f"a.{kind}")
+        assert done.exit_code == 0, done.stderr
+        assert (tmp_path / f"a.{kind}").exists()
+    mocapress("convert", tmp_path / "a.trc", "-o", tmp_path / "b.c3d")
+    back = mp.read(tmp_path / "b.c3d").values
+    assert np.array_equal(back, mp.read(SAMPLES / "markers.c3d").values, equal_nan=True)
+    refused = mocapress("convert", SAMPLES / "markers.c3d", "-o", tmp_path / "a.bvh")
+    assert refused.exit_code == 1
+    assert "no skeleton" in refused.stderr

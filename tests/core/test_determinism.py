@@ -4,6 +4,7 @@ The check programs, core/check/CODEC.cpp, code made-up motion, decode it and pri
 Built as the package is, what they print is in tests/golden/; built otherwise, they must print that.
 """
 
+import fcntl
 import importlib.util
 import os
 import platform
@@ -72,10 +73,19 @@ def printed(codec: str, way: Way) -> str:
     if missing := way.features - features():
         pytest.skip(f"this processor has no {', '.join(sorted(missing))}")
     program = f"build/check/{way.name}/{codec}{way.ending}"
-    subprocess.run(["make", "-s", program], cwd=ROOT, check=True, capture_output=True)
+    make(program)
     whole = [*way.under, str(ROOT / program)]
     quiet = os.environ | {"WINEDEBUG": "-all"}
     return subprocess.run(whole, capture_output=True, text=True, check=True, env=quiet).stdout
+
+
+def make(target: str) -> None:
+    """Build a file, unless a test in another process does so now."""
+    lock = ROOT / "build/check.locks" / target.replace("/", "-")
+    lock.parent.mkdir(parents=True, exist_ok=True)
+    with lock.open("w") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        subprocess.run(["make", "-s", target], cwd=ROOT, check=True, capture_output=True)
 
 
 def need_zig() -> None:
@@ -116,6 +126,6 @@ MODULES = sorted(path.stem for path in (ROOT / "viewer/wasm").glob("*.wasm"))
 def test_the_page_carries_what_the_sources_give(module: str) -> None:
     need_zig()
     built = f"build/wasm/{module}.wasm"
-    subprocess.run(["make", "-s", built], cwd=ROOT, check=True, capture_output=True)
+    make(built)
     committed = ROOT / "viewer/wasm" / f"{module}.wasm"
     assert (ROOT / built).read_bytes() == committed.read_bytes(), "make wasm builds it anew"

@@ -134,7 +134,7 @@ def test_one_frame_is_a_slice_too(samples: Path) -> None:
     file = samples / "freebvh.bvh"
     clip = mp.read(file)
     with pytest.raises(TypeError, match=r"clip\[10:11\]"):
-        clip[10]  # type: ignore[index]
+        clip[10]  # type: ignore[call-overload]
     with pytest.raises(mp.ParameterError, match="slice"):
         mp.load(mp.compress(file), frames=10)  # type: ignore[arg-type]
 

@@ -1,18 +1,22 @@
-// Reads .mcz files: docs/format.md. What belongs to the original file's text is passed by.
+// Reads .mcz files: docs/format.md. Of what belongs to the original file, the layout is read if it is
+// asked for.
 import { chunksOfStreams, checkEnd, isChunk, readChunk } from "./chunks.js";
 import { decoderOf } from "./decoding.js";
 import { MczError } from "./error.js";
 import { readHead } from "./head.js";
 import { unpack } from "./packing.js";
+import { Record } from "./record.js";
 import { readSections, TAG } from "./sections.js";
 
 const MOST_UNPACKED = 2 ** 24;
+const DIGEST = 32; // bytes
 
 /**
  * @typedef {Object} Mcz
  * @property {Object|null} skeleton
  * @property {import("./head.js").Stream[]} streams
  * @property {import("./chunks.js").Chunk[][]} chunks of each stream, in the order of their frames
+ * @property {Record|undefined} original what belongs to the file that it was made of
  * @property {boolean} closed false: a recording that was not closed
  */
 
@@ -39,7 +43,35 @@ export async function openMcz(bytes, assets) {
   else if (!recording) throw new MczError("the file is cut off", { offset: bytes.length });
   const own = chunksOfStreams(chunks, streams);
   checkValues(streams, own, bytes.length);
-  return { skeleton, streams, chunks: own, closed };
+  return { skeleton, streams, chunks: own, closed, original: found(TAG.file)?.content };
+}
+
+/**
+ * The layout of the file that a .mcz was made of, where it is of one of these formats.
+ *
+ * @param {Mcz} mcz
+ * @param {string[]} kinds
+ * @param {import("./assets.js").Assets} assets
+ * @returns {Promise<{kind: string, layout: Record}|null>} docs/format/c3d.md and table.md
+ */
+export async function layoutOf({ original }, kinds, assets) {
+  if (!original) return null;
+  const record = new Record(original.bytes, original.name, original.begin);
+  const kind = record.text();
+  if (!kinds.includes(kind)) return null;
+  record.text(); // its name
+  record.integer(); // and size
+  record.raw(DIGEST);
+  for (let left = record.integer(); left; left--) {
+    record.integer();
+    record.text();
+    record.text();
+    record.integer();
+    record.integer();
+    record.text();
+    record.text();
+  }
+  return { kind, layout: new Record(await unpack(record, MOST_UNPACKED, assets), "layout") };
 }
 
 /**

@@ -149,9 +149,7 @@ def compress_parts(
     """Compress a file that was taken apart; see ``compress`` and ``taken_apart``."""
     data = source.data
     found: Compressed | None = None
-    small = _SMALL
     if parts is not None:
-        small = _SMALL if parts.stored is None else _SMALL_OF_NUMBERS
         warning = _warning_of(parts, source)
         reason = unfit(parts, len(data))
         if reason:
@@ -174,11 +172,26 @@ def compress_parts(
 
             found, failure = first_that_works(codec, work)
             warning = "; ".join(filter(None, (failure, warning))) or None
-    if found is None or len(data) < small or len(found.blob) > _POOR * len(data):
-        plain = _compress_plain(source, notes or {})
-        if found is None or len(plain) < len(found.blob):
-            found = Compressed(plain, None)
+    kept = smallest(source, parts, found.blob if found else None, notes)
+    if found is None or kept is not found.blob:
+        found = Compressed(kept, None)
     return replace(found, warning=warning)
+
+
+def smallest(
+    source: Source, parts: Split | None, blob: bytes | None, notes: Mapping[str, str] | None = None
+) -> bytes:
+    """Give the file that a codec made, or one of a general-purpose compressor.
+
+    The latter is tried where no codec made one, on small files and where the codec saves little;
+    the smaller is kept.
+    """
+    size = len(source.data)
+    small = _SMALL if parts is None or parts.stored is None else _SMALL_OF_NUMBERS
+    if blob is not None and size >= small and len(blob) <= _POOR * size:
+        return blob
+    plain = _compress_plain(source, notes or {})
+    return plain if blob is None or len(plain) < len(blob) else blob
 
 
 def _warning_of(parts: Split, source: Source) -> str | None:

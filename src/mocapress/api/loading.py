@@ -143,7 +143,7 @@ def _described(opened: Opened, clip: Clip) -> Clip:
     of = _format(original.format) if original and original.format else None
     if original is None or of is None or of.describe is None:
         return clip
-    return of.describe(own_layout(original), clip)
+    return opened.source.described(of, own_layout(original), clip)
 
 
 def _clip(
@@ -227,7 +227,7 @@ def _of_contents(opened: Opened, asf_path: str | Path | None, *, strict: bool) -
         raise FormatError("no motion in this file", expected=f"{known} inside")
     parts = source.split(asf_path, of, data)
     source.accept(parts.problems, strict=strict)
-    return of.describe(parts.stored, parts.clip) if of.describe else parts.clip
+    return source.described(of, parts.stored, parts.clip)
 
 
 def _unknown(opened: Opened, head: StreamHead) -> None:

@@ -124,7 +124,7 @@ class Opened:
         head = self.streams[stream]
         last = self.mcz.frames(stream) if last is None else last
         self.source.allow(self.bytes_of(stream, max(last - first, 0)))
-        values = np.full((max(last - first, 0), len(head.columns)), np.nan)
+        values = np.empty((max(last - first, 0), len(head.columns)))
         kept = np.zeros(len(values), np.bool_)
         for group in _groups(self.mcz.of_stream[stream], first, last, alone=self.salvage):
             try:
@@ -142,6 +142,7 @@ class Opened:
                     raise
                 frames = f"frames {group[0].first} to {group[-1].last - 1}"
                 self.damage.append(Damage(f"{frames} of stream {head.name}", error))
+        values[~kept] = np.nan
         if self.salvage:
             self._name_gaps(stream, first, last)
         return Rows(values, kept)

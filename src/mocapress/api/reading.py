@@ -1,13 +1,15 @@
 """Motion files to clips and back."""
 
+import warnings
 from pathlib import Path
 
 from mocapress import formats
 from mocapress.api.clips import compress_clip
 from mocapress.container import diffma_json
-from mocapress.errors import UnsupportedError
+from mocapress.errors import MocapressError, MotionWarning, UnsupportedError
 from mocapress.formats import Format
 from mocapress.motion import Clip
+from mocapress.motion.clip import MOTION
 from mocapress.motion.convert import with_rate
 from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, LIMIT, Named, Source
 from mocapress.source import read as read_motion
@@ -105,13 +107,21 @@ def write(
         clip = with_rate(clip, fps)
         write_whole(path, diffma_json.named(path.name, diffma_json.to_json(clip)), force=force)
         return
-    of = formats.by_id(to) if to else formats.by_name(path.name)
+    of = formats.by_id(to) if to else formats.for_writing(path.name)
     if of is None:
         known = formats.listed(formats.writable())
         raise UnsupportedError(
             "no format to write clips in", expected=known, found=repr(path.suffix)
         )
     write_all(printed(with_rate(clip, fps, needed=of.timed), of, path), force=force)
+
+
+def _warn_of_losses(clip: Clip, fitted: Clip, of: Format) -> None:
+    """Name the streams that a format does not hold; joints may become points."""
+    lost = [name for name in clip.streams if name not in fitted.streams and name != MOTION]
+    if lost:
+        what = f"{', '.join(lost)} of this clip are not written, which {of.name} does not hold"
+        warnings.warn(MotionWarning("lost-streams", MocapressError(what)), stacklevel=3)
 
 
 def printed(clip: Clip, of: Format, path: Path) -> dict[Path, bytes]:
@@ -129,7 +139,9 @@ def printed(clip: Clip, of: Format, path: Path) -> dict[Path, bytes]:
     if of.write is None:
         known = formats.listed(formats.writable())
         raise UnsupportedError("no format to write clips in", expected=known, found=of.name)
-    (_, data), *companions = of.write(of.fit(clip)).items()
+    fitted = of.fit(clip)
+    _warn_of_losses(clip, fitted, of)
+    (_, data), *companions = of.write(fitted).items()
     files = {path: data}
     for suffix, contents in companions:
         place = path.with_suffix(suffix)

@@ -4,13 +4,17 @@ from typing import Annotated
 
 import typer
 
+from mocapress.cli.compare import compare
 from mocapress.cli.compress import compress
 from mocapress.cli.convert import convert
 from mocapress.cli.decompress import decompress
 from mocapress.cli.info import info
 from mocapress.cli.installed import Commands
 from mocapress.cli.library import app as library
+from mocapress.cli.list_codecs import list_codecs
+from mocapress.cli.list_files import list_files
 from mocapress.cli.options import Debug
+from mocapress.cli.stats import stats
 from mocapress.cli.train import train
 from mocapress.cli.verify import verify
 from mocapress.cli.view import view
@@ -35,11 +39,15 @@ def _version(value: bool) -> None:
 @app.callback()
 def options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+        bool,
+        typer.Option("--version", "-V", callback=_version, is_eager=True, help="Show the version."),
     ] = False,
     debug: Debug = False,
 ) -> None:
     """Store, play and search motion capture: AMC, ASF and BVH, restored byte for byte.
+
+    As with zstd and xz, mocapress FILE compresses, -d restores, -l lists and -t verifies; -1 to -9,
+    -c, -f, -k, -o, -q, -r, -T and -v are what they are there.
 
     Exit codes: 0 done, 1 bad input, 2 wrong usage, 3 verification failed, 70 a defect of
     mocapress, 128 and more ended by a signal (130: Ctrl-C).
@@ -47,6 +55,8 @@ def options(
     _ = version, debug
 
 
-for _command in (compress, decompress, verify, train, info, convert, view):
+for _command in (compress, decompress, verify, train, info, convert, compare, stats, view):
     app.command()(_command)
+app.command("list")(list_files)
+app.command("codecs")(list_codecs)
 app.add_typer(library, name="library")

@@ -5,6 +5,7 @@ import queue
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -16,7 +17,7 @@ import typer
 
 from mocapress.cli.report import Report
 from mocapress.cli.warned import collecting, kept
-from mocapress.errors import MotionWarning
+from mocapress.errors import MotionWarning, ParameterError
 from mocapress.storage import check_targets, is_stream, write_all
 
 if TYPE_CHECKING:
@@ -47,6 +48,8 @@ class Job:
     """Endings of further outputs, of the target's name."""
     force: bool = False
     """Whether files that exist are replaced."""
+    remove: bool = False
+    """Whether the source is removed once the output is written."""
     times: bool = True
     """Whether outputs get the source's modification time; they always get its permissions."""
     stored: bool = False
@@ -58,6 +61,7 @@ class Job:
     modified: int | None = None
     """What the outputs get as their modification time, in nanoseconds since 1970."""
     result: dict[str, Any] = field(default_factory=dict)
+    seconds: float = 0
     error: Exception | None = None
     warnings: list[MotionWarning] = field(default_factory=list)
 
@@ -89,13 +93,20 @@ def is_folder(path: str | Path) -> bool:
     return os.path.isdir(path)  # noqa: PTH112 - Path.is_dir raises for a name that is too long
 
 
+def is_hidden(name: str) -> bool:
+    """Tell whether a file or folder is left out where folders are gone through."""
+    return name.startswith(".")
+
+
 def _below(folder: Path, suffixes: tuple[str, ...]) -> list[Path]:
     found, unreadable = [], []
     # A folder that cannot be read becomes a job that fails; it must not be missed in silence.
-    for place, _, names in os.walk(
+    for place, folders, names in os.walk(
         folder, onerror=lambda error: unreadable.append(Path(error.filename))
     ):
-        paths = [Path(place, name) for name in names if name.lower().endswith(suffixes)]
+        folders[:] = [name for name in folders if not is_hidden(name)]
+        seen = [name for name in names if not is_hidden(name)]
+        paths = [Path(place, name) for name in seen if name.lower().endswith(suffixes)]
         found += [path for path in paths if path.is_file()]
     return sorted([*found, *unreadable])
 
@@ -115,6 +126,8 @@ def run(
     show: Callable[[Job], None],
     total: Callable[[list[Job]], None] | None = None,
     failure_code: int = 1,
+    quiet: bool = False,
+    verbose: bool = False,
     debug: bool = False,
     whole: float | None = None,
     close: Callable[[], None] | None = None,
@@ -128,13 +141,15 @@ def run(
     work
         Gives the facts of a job's result, and leaves what is to be stored in ``outputs``.
     threads
-        Jobs at a time.
+        Jobs at a time; 0: as many as there are cores.
     json
         Whether results are reported as JSON.
     show, total
         Print a result, and the sum of several.
     failure_code
         Of inputs that are bad.
+    quiet, verbose
+        Whether nothing but errors is printed; whether time and speed are, too.
     debug
         Whether errors come with their tracebacks.
     whole
@@ -143,17 +158,26 @@ def run(
         What to do before a signal ends the process.
 
     """
-    report = Report(json=json, show=show, failure_code=failure_code, debug=debug)
+    report = Report(
+        json=json,
+        show=show,
+        failure_code=failure_code,
+        quiet=quiet,
+        verbose=verbose,
+        debug=debug,
+    )
     done: queue.SimpleQueue[Job | int] = queue.SimpleQueue()
     storing = _Storing()
 
     def one(job: Job) -> None:
+        begun_at = time.monotonic()
         try:
             if job.error is None:
                 job.result = _worked(job, work, storing)
         except Exception as error:  # noqa: BLE001 - whatever it is, it must not stop the others
             job.error = error
         finally:
+            job.seconds = time.monotonic() - begun_at
             job.warnings = kept()
             job.outputs.clear()
             done.put(job)
@@ -161,6 +185,7 @@ def run(
     number = len(jobs) if isinstance(jobs, Sequence) else None
     if whole is None:
         whole = number
+    threads = threads or os.cpu_count() or 1
     pool = ThreadPoolExecutor(threads)
     coming, begun, more = iter(jobs), 0, True
     try:
@@ -223,7 +248,24 @@ def _worked(job: Job, work: Callable[[Job], dict[str, Any]], storing: _Storing) 
         if not any(is_stream(path) for path in job.outputs):  # a FIFO may never be read
             storing.begin(job)
         write_all(job.outputs, force=job.force, like=like, times=job.times, modified=job.modified)
+        if job.remove and like:
+            _remove(job.source, like)
     return result
+
+
+def _remove(source: Path, read: os.stat_result) -> None:
+    """Remove a file whose output is written, if it is still the file that was read."""
+    found = source.lstat()
+    if (found.st_ino, found.st_size, found.st_mtime_ns) != (
+        read.st_ino,
+        read.st_size,
+        read.st_mtime_ns,
+    ):
+        raise ParameterError(
+            "not removed, though its output is written: it is a link, or was changed meanwhile",
+            file=str(source),
+        )
+    source.unlink()
 
 
 def _to_stdout(data: bytes) -> None:

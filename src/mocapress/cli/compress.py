@@ -7,7 +7,22 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mocapress.cli.options import Asf, Debug, Force, Inputs, Jobs, Json, Output
+from mocapress.cli.list_codecs import complete_codecs
+from mocapress.cli.options import (
+    Asf,
+    Debug,
+    Force,
+    Inputs,
+    Jobs,
+    Json,
+    Output,
+    Parents,
+    Quiet,
+    Remove,
+    SkipExisting,
+    Update,
+    Verbose,
+)
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -38,7 +53,8 @@ def compress(
         typer.Option(
             "--codec",
             help="Codec, e.g. exact:level=9 or diffma:bound=4. By default exact, which is "
-            "lossless; diffma for JSON.",
+            "lossless; diffma for JSON. See mocapress codecs.",
+            autocompletion=complete_codecs,
         ),
     ] = None,
     level: Annotated[
@@ -78,6 +94,12 @@ def compress(
     ] = None,
     jobs: Jobs = 1,
     force: Force = False,
+    skip_existing: SkipExisting = False,
+    update: Update = False,
+    parents: Parents = False,
+    remove: Remove = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
@@ -85,7 +107,7 @@ def compress(
     from math import isfinite
 
     from mocapress import api
-    from mocapress.cli.batch import find, run
+    from mocapress.cli.batch import find, run, usage
     from mocapress.cli.models import open_model
     from mocapress.cli.sizes import show_sizes, show_total
     from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
@@ -108,7 +130,12 @@ def compress(
         json=json,
         text=to is Packed.JSON,
         reads=[asf, model],
+        skip=skip_existing,
+        update=update,
+        parents=parents,
     )
+    if remove and not made.lossless:
+        usage(f"--rm: {made.id} is lossy, and what it leaves out is only in the originals")
     say_what_is_left_out(inputs, (*endings, *_ENDINGS[Packed.MCZ], *JSON_SUFFIXES))
 
     def work(job: "Job") -> dict[str, Any]:
@@ -130,6 +157,7 @@ def compress(
         facts["largest_error"] = loss.most if loss else None
         facts["psnr"] = loss.psnr if loss and isfinite(loss.psnr) else None
         job.outputs[job.target] = blob
+        job.remove = remove
         return {
             "output": str(job.target),
             "raw_bytes": source.size,
@@ -138,7 +166,17 @@ def compress(
             **facts,
         }
 
-    run(files, work, threads=jobs, json=json, show=show_sizes, total=show_total, debug=debug)
+    run(
+        files,
+        work,
+        threads=jobs,
+        json=json,
+        show=show_sizes,
+        total=show_total,
+        quiet=quiet,
+        verbose=verbose,
+        debug=debug,
+    )
 
 
 def _kind_of(output: str | None) -> Packed:
@@ -192,15 +230,22 @@ def say_what_is_left_out(inputs: list[Path], known: tuple[str, ...]) -> None:
     """Count files in folders that are not compressed, so that nobody deletes them by mistake."""
     from os import walk
 
-    from mocapress.cli.batch import is_folder
+    from mocapress.cli.batch import is_folder, is_hidden
     from mocapress.cli.report import say
 
     for folder in (path for path in inputs if is_folder(path)):
-        files = (name for _, _, names in walk(folder) for name in names)
-        others = [name for name in files if not name.lower().endswith(known)]
-        if others:
-            more = f" and {len(others) - 1} more" if len(others) > 1 else ""
-            say(f"{folder}: not motion, left out: {others[0]}{more}")
+        others, hidden = [], []
+        for place, _, names in walk(folder):
+            below = any(is_hidden(part) for part in Path(place).relative_to(folder).parts)
+            for name in names:
+                if below or is_hidden(name):
+                    hidden.append(name)
+                elif not name.lower().endswith(known):
+                    others.append(name)
+        for left_out, why in ((others, "not motion"), (hidden, "hidden")):
+            if left_out:
+                more = f" and {len(left_out) - 1} more" if len(left_out) > 1 else ""
+                say(f"{folder}: {why}, left out: {left_out[0]}{more}")
 
 
 def _compressed_name(source: Path, to: Packed) -> Path:

@@ -19,12 +19,8 @@ from mocapress.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from mocapress.cli.batch import Job
     from mocapress.formats import Format
-    from mocapress.models import Place
-    from mocapress.motion import Clip
     from mocapress.source import Source
 
 
@@ -50,10 +46,11 @@ def convert(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Convert between AMC with ASF and BVH; joint positions are kept, nothing is rescaled."""
+    """Convert between AMC, BVH, C3D and TRC, or write CSV, NPZ or Parquet; nothing is rescaled."""
     from mocapress import api
     from mocapress.cli.batch import STREAM, find, run
     from mocapress.cli.models import open_models, places_for
+    from mocapress.cli.reading import read_clip
     from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
     from mocapress.container import diffma_json
     from mocapress.formats import by_id, readable, suffixes
@@ -85,7 +82,7 @@ def convert(
     def work(job: "Job") -> dict[str, Any]:
         assert job.target is not None
         source = job.opened(limit)
-        clip = _read(source, asf, places_for(job, given), strict=not lenient)
+        clip = read_clip(source, asf, places_for(job, given), strict=not lenient)
         clip = with_rate(clip, fps, needed=made.timed)
         job.outputs |= api.printed(clip, made, job.target)
         if job.target == STREAM or is_stream(job.target):  # which has nothing beside it
@@ -103,31 +100,15 @@ def convert(
 
 def _format(to: str | None, output: str | None) -> "Format":
     from mocapress.cli.batch import usage
-    from mocapress.formats import by_name, writable
+    from mocapress.formats import for_writing, writable
 
     known = [of for of in writable() if to is None or of.id == to]
-    named = by_name(output) if output else None
+    named = for_writing(output) if output else None
     found = (known[0] if known else None) if to else named
     if found is None or found not in known:
         ids = ", ".join(of.id for of in writable())
         usage(f"say what to convert to: --to ({ids}), or an output with the ending of one of these")
     return found
-
-
-def _read(source: "Source", asf: Path | None, models: "Sequence[Place]", *, strict: bool) -> "Clip":
-    from mocapress import api
-    from mocapress.errors import UnsupportedError
-    from mocapress.source import MCZ
-
-    if source.kind == MCZ:
-        clip = api.load_source(source, asf_path=asf, models=models, strict=strict)
-    else:
-        clip = api.read_source(source, asf, strict=strict)
-    if clip.skeleton is None:
-        raise UnsupportedError(
-            "no skeleton", file=source.name or None, expected="one beside it, or --asf"
-        )
-    return clip
 
 
 def _keep_skeleton(job: "Job", source: "Source") -> None:

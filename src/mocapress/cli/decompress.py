@@ -5,7 +5,22 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mocapress.cli.options import Debug, Force, Inputs, Jobs, Json, Limit, Models, Output
+from mocapress.cli.options import (
+    Debug,
+    Force,
+    Inputs,
+    Jobs,
+    Json,
+    Limit,
+    Models,
+    Output,
+    Parents,
+    Quiet,
+    Remove,
+    SkipExisting,
+    Update,
+    Verbose,
+)
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -28,6 +43,12 @@ def decompress(
     ] = False,
     jobs: Jobs = 1,
     force: Force = False,
+    skip_existing: SkipExisting = False,
+    update: Update = False,
+    parents: Parents = False,
+    remove: Remove = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
@@ -48,6 +69,9 @@ def decompress(
         force=force,
         json=json,
         reads=models or [],
+        skip=skip_existing,
+        update=update,
+        parents=parents,
     )
 
     def work(job: "Job") -> dict[str, Any]:
@@ -63,13 +87,27 @@ def decompress(
         if with_asf and job.target != STREAM:
             for companion in restored.companions:
                 job.outputs[job.target.with_suffix(f".{companion.format}")] = companion.data
+        whole = len(job.outputs) == 1 + len(restored.companions) and not restored.damage
+        job.remove = remove and whole
+        kept = "not removed, as it holds more than was restored (see --with-asf)"
         return {
+            "warning": kept if remove and not whole else None,
             "output": str(job.target),
             "raw_bytes": len(restored.data),
             "compressed_bytes": source.size,
         }
 
-    run(files, work, threads=jobs, json=json, show=show_sizes, total=show_total, debug=debug)
+    run(
+        files,
+        work,
+        threads=jobs,
+        json=json,
+        show=show_sizes,
+        total=show_total,
+        quiet=quiet,
+        verbose=verbose,
+        debug=debug,
+    )
 
 
 def _original_name(source: Path) -> Path:

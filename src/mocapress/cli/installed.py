@@ -6,13 +6,21 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
+from mocapress.cli.shorthand import spelled
+
 GROUP = "mocapress.commands"
 _KNOWN = {"bench": "mocapress-bench"}
 """Packages to name where a command is asked for whose package is not installed."""
 
 
 class Commands(TyperGroup):
-    """Our own commands, then those of other packages."""
+    """Our own commands, then those of other packages; also spelled as zstd's users spell them."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read the arguments, of which short ways are spelled out first."""
+        return super().parse_args(
+            ctx, spelled(args, lambda word: bool(self.get_command(ctx, word)))
+        )
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Name all commands."""

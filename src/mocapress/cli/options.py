@@ -20,7 +20,41 @@ Output = Annotated[
     ),
 ]
 Jobs = Annotated[
-    int, typer.Option("-j", "--jobs", min=1, help="Number of files to work on at a time.")
+    int,
+    typer.Option(
+        "-j",
+        "--jobs",
+        "-T",
+        "--threads",
+        min=0,
+        help="Number of files to work on at a time; 0: as many as there are cores.",
+    ),
+]
+Quiet = Annotated[
+    bool, typer.Option("-q", "--quiet", help="Print errors only, neither results nor warnings.")
+]
+Verbose = Annotated[
+    bool, typer.Option("-v", "--verbose", help="Also print the time and speed of each file.")
+]
+Parents = Annotated[
+    bool, typer.Option("-p", "--parents", help="Make all folders above the outputs' own, too.")
+]
+SkipExisting = Annotated[
+    bool, typer.Option("--skip-existing", help="Leave out inputs whose output exists.")
+]
+Update = Annotated[
+    bool,
+    typer.Option(
+        "--update",
+        "-u",
+        help="Leave out inputs whose output exists and is as new; replace what is older.",
+    ),
+]
+Remove = Annotated[
+    bool,
+    typer.Option(
+        "--rm", help="Remove each input when its output is written; by default all are kept."
+    ),
 ]
 Force = Annotated[
     bool,
@@ -59,7 +93,7 @@ Lenient = Annotated[
     bool,
     typer.Option("--lenient", help="Read files that have lost frames as far as possible."),
 ]
-Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks.", hidden=True)]
+Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks of errors.")]
 
 
 def _bytes(text: str) -> int:

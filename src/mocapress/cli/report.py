@@ -22,9 +22,17 @@ class Report:
     """Results on stdout, warnings and failures on stderr; with JSON, all of them in one array."""
 
     def __init__(
-        self, *, json: bool, show: Callable[["Job"], None], failure_code: int, debug: bool
+        self,
+        *,
+        json: bool,
+        show: Callable[["Job"], None],
+        failure_code: int,
+        quiet: bool,
+        verbose: bool,
+        debug: bool,
     ) -> None:
         self.json, self.show, self.failure_code, self.debug = json, show, failure_code, debug
+        self.quiet, self.verbose = quiet, verbose
         self.reported: set[Job] = set()
         self.done: list[Job] = []
         self.failed: list[Job] = []
@@ -38,26 +46,31 @@ class Report:
         """Report a job that is done or has failed."""
         if self.json:
             print("[" if not self.reported else ",", _json(job), sep="\n")
-        else:
-            for warning in job.warnings:
-                say(f"warning: {_with_file(job, str(warning))}")
-            if job.error is None and job.result.get("warning"):
-                say(f"warning: {_with_file(job, str(job.result['warning']))}")
-            if job.error is None:
-                self.show(job)
-            else:
-                say(message(job.error, str(job.source)))
+        elif job.error is not None:
+            self._warn(job)
+            say(message(job.error, str(job.source)))
+        elif not self.quiet:
+            self._warn(job)
+            self.show(job)
+            if self.verbose:
+                say(_speed(job))
         if self.debug and job.error is not None:
             traceback.print_exception(job.error)
         sys.stdout.flush()
         self.reported.add(job)
         (self.done if job.error is None else self.failed).append(job)
 
+    def _warn(self, job: "Job") -> None:
+        for warning in job.warnings * (not self.quiet):
+            say(f"warning: {_with_file(job, str(warning))}")
+        if job.error is None and job.result.get("warning"):
+            say(f"warning: {_with_file(job, str(job.result['warning']))}")
+
     def end(self, total: Callable[[list["Job"]], None] | None) -> None:
         """Report the sum; raise the exit code where something has failed."""
         if self.json:
             self._close()
-        elif total and len(self.done) > 1:
+        elif total and len(self.done) > 1 and not self.quiet:
             total(self.done)
         if any(is_defect(job.error) for job in self.failed):
             raise typer.Exit(DEFECT)
@@ -123,6 +136,13 @@ def _finite(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_finite(part) for part in value]
     return None if isinstance(value, float) and not isfinite(value) else value
+
+
+def _speed(job: "Job") -> str:
+    """Say how long a job took, and how fast that was where its size is known."""
+    size = job.result.get("raw_bytes")
+    speed = f", {size / job.seconds / 1e6:.1f} MB/s" if size and job.seconds else ""
+    return f"{job.source}: {job.seconds:.2f} s{speed}"
 
 
 def _with_file(job: "Job", text: str) -> str:

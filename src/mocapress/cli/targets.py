@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from mocapress.cli.batch import STREAM, Job, is_folder, usage
+from mocapress.cli.report import say
 from mocapress.errors import MocapressError
 from mocapress.storage import is_stream
 
@@ -21,6 +22,9 @@ def plan(
     json: bool = False,
     text: bool = True,
     reads: Iterable[Path | None] = (),
+    skip: bool = False,
+    update: bool = False,
+    parents: bool = False,
 ) -> list[Job]:
     """Give each job its target; end with the exit code of wrong usage where one cannot be.
 
@@ -40,11 +44,16 @@ def plan(
         Whether outputs may go to a terminal.
     reads
         Further files that are read, which no output may replace.
+    skip, update
+        Whether jobs whose output exists are left out; or only those whose output is as new as the
+        source, and the others replaced.
+    parents
+        Whether all folders above the outputs may be made, and not only the last one of ``output``.
 
     Returns
     -------
     list
-        The jobs, without those that were named twice.
+        The jobs, without those that were named twice, and those that were left out.
 
     """
     many = len(jobs) > 1 or any(job.in_folder for job in jobs)
@@ -52,7 +61,11 @@ def plan(
         _refuse_stdout(many=many, json=json, text=text or force)
         jobs[0].target = STREAM
         return [*jobs]
+    if skip + update + force > 1:
+        usage("--force, --skip-existing and --update exclude each other")
     folder = _is_folder(output, many=many) if output else False
+    if output and not parents:
+        _refuse_missing(Path(output) if folder else Path(output).parent)
     for job in jobs:
         job.force = force
         try:
@@ -62,7 +75,32 @@ def plan(
     planned = [*{(job.source, job.target): job for job in jobs}.values()]
     _refuse_equal(planned)
     refuse_sources(planned, [*(job.source for job in planned), *reads])
-    return planned
+    return _left(planned, update=update) if skip or update else planned
+
+
+def _left(jobs: Sequence[Job], *, update: bool) -> list[Job]:
+    """Leave out jobs whose output exists, or is as new as its source; say how many."""
+    left = []
+    for job in jobs:
+        try:
+            written = job.target.stat().st_mtime_ns if job.target else None
+            job.force = update and written is not None and written < job.source.stat().st_mtime_ns
+        except OSError:  # what is wrong is said when the job is done
+            written = None
+        if written is None or job.force:
+            left.append(job)
+    if len(left) < len(jobs):
+        skipped = len(jobs) - len(left)
+        say(f"{skipped} of {len(jobs)} files left out: their outputs exist")
+    return left
+
+
+def _refuse_missing(folder: Path) -> None:
+    if not is_folder(folder) and not is_folder(folder.parent):
+        usage(f"there is no folder {folder.parent}; -p makes it")
+
+
+_ARCHIVES = (".zip", ".7z", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".zst", ".mocapdb")
 
 
 def refuse_other_kinds(output: str | None, allowed: Sequence[str], others: Iterable[str]) -> None:
@@ -78,7 +116,7 @@ def known_endings() -> tuple[str, ...]:
     """Give the suffixes of all kinds of files that mocapress knows."""
     from mocapress.formats import formats, suffixes
 
-    return (*suffixes(formats()), ".mcz", ".mcm", ".json", ".json.xz")
+    return (*suffixes(formats()), ".mcz", ".mcm", ".json", ".json.xz", *_ARCHIVES)
 
 
 def _target(job: Job, output: str | None, rename: Callable[[Path], Path], *, folder: bool) -> Path:

@@ -72,7 +72,7 @@ def peek_model(data: bytes | memoryview) -> Mcm:
 
 
 def _read_header(reader: Reader) -> Mcm:
-    read_magic(reader, MAGIC, VERSION, ".mcm")
+    read_magic(reader, MAGIC, VERSION, "not a model of mocapress")
     header = Reader(read_section(reader, _HEADER, "header"), "header")
     try:
         codec = header.raw(header.integer(_LONGEST_ID)).decode()

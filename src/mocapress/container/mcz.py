@@ -120,7 +120,7 @@ def open_mcz(ranges: Ranges, *, salvage: bool = False) -> Mcz:
     """
     size = ranges.size
     front = _whole(ranges, 0, min(size, _FRONT))
-    read_magic(Reader(front, "file"), MAGIC, VERSION, ".mcz")
+    read_magic(Reader(front, "file"), MAGIC, VERSION, "not compressed by mocapress")
     mcz = Mcz(ranges, size)
     collect = _Collector(mcz, salvage)
     end = _find_end(ranges, size)

@@ -26,8 +26,8 @@ class Section(NamedTuple):
     """Whether its checksum is right."""
 
 
-def read_magic(reader: Reader, magic: bytes, version: int, name: str) -> None:
-    """Take a file's first five bytes.
+def read_magic(reader: Reader, magic: bytes, version: int, other: str) -> None:
+    """Take a file's first five bytes; ``other`` says what is wrong where they are no such file's.
 
     Raises
     ------
@@ -37,9 +37,8 @@ def read_magic(reader: Reader, magic: bytes, version: int, name: str) -> None:
         When it is of a later version.
 
     """
-    found = bytes(reader.data[: len(magic)])
-    if found != magic:
-        raise CorruptError(f"not a {name} file", offset=0, expected=magic.hex(), found=found.hex())
+    if bytes(reader.data[: len(magic)]) != magic:
+        raise CorruptError(other)
     reader.raw(len(magic))
     number = reader.raw(1)[0]
     if number != version:

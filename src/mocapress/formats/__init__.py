@@ -19,6 +19,7 @@ __all__ = [
     "Split",
     "by_id",
     "by_name",
+    "for_writing",
     "formats",
     "listed",
     "readable",
@@ -29,7 +30,7 @@ __all__ = [
 
 GROUP = "mocapress.formats"
 # Modules whose ``FORMAT`` is asked in this order; an ASF can look like an AMC, too.
-_OWN = ("c3d", "bvh", "asf", "amc", "trc", "tables")
+_OWN = ("c3d", "bvh", "asf", "amc", "trc", "tables", "npz", "parquet")
 _HEAD = 2**16
 
 
@@ -100,11 +101,21 @@ def by_name(file: str) -> Format | None:
     return next((made for made in _all() if name.endswith(made.suffixes)), None)
 
 
+def for_writing(file: str) -> Format | None:
+    """Tell from a file's name the format in which a clip is written to it."""
+    found = by_name(file)
+    if found is None or not file.lower().endswith(found.written or found.suffixes):
+        return None
+    return found if found.write else None
+
+
 def recognise(data: bytes, file: str = "") -> Format | None:
-    """Tell a format from a file's contents, then from its name; None for none."""
+    """Tell a format that can be read from a file's contents, then from its name."""
     head = head_as_utf8(data[:_HEAD]).lstrip(b"\xef\xbb\xbf \t\r\n")
     found = next((made for made in _all() if made.recognises(head)), None)
-    return found or by_name(file)
+    if found is None:
+        found = by_name(file)
+    return found if found and (found.split or found.read_skeleton) else None
 
 
 def suffixes(of: Iterable[Format]) -> tuple[str, ...]:

@@ -13,29 +13,20 @@ from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.errors import CorruptError, FormatError
-from mocapress.formats.c3d_parameters import (
-    ANALOG,
-    CAMERAS,
-    POINTS,
-    RESIDUALS,
-    ROTATIONS,
-    Parameters,
-    described,
-)
+from mocapress.formats.c3d_parameters import Parameters, described
 from mocapress.formats.c3d_writing import fit, write
 from mocapress.formats.contract import Format, Split
 from mocapress.formats.layout import NO_ROWS
 from mocapress.formats.problems import EXTRA_ROWS, MISSING_ROWS, Problem
 from mocapress.motion import Clip, Skeleton, Stream
-from mocapress.motion.clip import FrameTime
 from mocapress.motion.columns import numbered_columns
+from mocapress.motion.frame_time import FrameTime
+from mocapress.motion.markers import ANALOG, CAMERAS, POINTS, RESIDUALS, ROTATIONS, WHOLE_WORD
 from mocapress.records import Reader, Writer
 
 _INTEL, _DEC, _MIPS = 84, 85, 86
 _PROCESSORS = (_INTEL, _DEC, _MIPS)
 _BLOCK = 512
-_WHOLE_WORD = 256
-"""Cameras of a fourth word that is no whole number: the residual is the word."""
 _IN_POINT, _IN_ROTATION = 4, 17
 _ROTATION_KINDS = tuple(f"m{i}" for i in range(_IN_ROTATION))
 _MOST_NUMBERS = 2**32
@@ -279,7 +270,7 @@ def _streams(shape: Shape, words: Words, turned: Words) -> tuple[dict[str, Value
     places[(of_points[:, :, :3] == gap).all(axis=2)] = np.nan
     fourth = shape.values(np.ascontiguousarray(of_points[:, :, 3])).reshape(count, points)
     whole = (np.floor(fourth) == fourth) & (np.abs(fourth) < 2**15)
-    cameras = np.where(whole, np.floor(np.where(whole, fourth, 0) / 256), float(_WHOLE_WORD))
+    cameras = np.where(whole, np.floor(np.where(whole, fourth, 0) / 256), float(WHOLE_WORD))
     residuals = np.where(whole, fourth - 256 * cameras, fourth)
     analog = shape.values(np.ascontiguousarray(words[:, _IN_POINT * points :]))
     return {
@@ -311,7 +302,7 @@ def _frame_words(shape: Shape, named: dict[str, Values], gap: int) -> Words:
         coordinates[np.isnan(places).all(axis=2)] = gap
         of_points[:, :, :3] = coordinates
         residuals, cameras = named[RESIDUALS], named[CAMERAS]
-        fourth = np.where(cameras == _WHOLE_WORD, residuals, 256 * cameras + residuals)
+        fourth = np.where(cameras == WHOLE_WORD, residuals, 256 * cameras + residuals)
         of_points[:, :, 3] = shape.bits(fourth)
         words[:, : _IN_POINT * points] = of_points.reshape(count, -1)
     if shape.channels:
@@ -347,7 +338,9 @@ def _timed(shape: Shape, named: dict[str, Values], told: Parameters) -> dict[str
         ANALOG: ("analog",),
         ROTATIONS: _ROTATION_KINDS,
     }
-    steps = {ANALOG: shape.samples, ROTATIONS: max(shape.turns // max(shape.frames, 1), 1)}
+    # A file of rotations alone has no frames of points to count them by.
+    turns = max(shape.turns // shape.frames, 1) if shape.frames else 1
+    steps = {ANALOG: shape.samples, ROTATIONS: turns}
     times: dict[str, FrameTime] = {
         name: time / step if time else None for name, step in steps.items()
     }
@@ -377,5 +370,5 @@ FORMAT = Format(
     fit=fit,
     write=write,
     read_layout=read_layout,
-    describe=lambda layout, clip: described(layout.head, clip),
+    describe=lambda layout, clip, _: described(layout.head, clip),
 )

@@ -13,14 +13,9 @@ import numpy as np
 
 from mocapress import _core
 from mocapress.motion import Clip, Stream
+from mocapress.motion.columns import distinct
+from mocapress.motion.markers import ANALOG, CAMERAS, POINTS, RESIDUALS
 
-POINTS, RESIDUALS, CAMERAS, ANALOG, ROTATIONS = (
-    "points",
-    "residuals",
-    "cameras",
-    "analog",
-    "rotations",
-)
 _DEC, _MIPS = 85, 86
 _NAMES = {84: "Intel", _DEC: "DEC", _MIPS: "MIPS"}
 _TEXT, _BYTE, _INTEGER, _REAL = -1, 1, 2, 4
@@ -106,6 +101,11 @@ class Parameters:
         return None
 
     @property
+    def point_scale(self) -> float:
+        """What whole numbers of coordinates and residuals are multiplied by."""
+        return abs(self.number("POINT", "SCALE", self.of_header(12, _REAL))) or 1.0
+
+    @property
     def first_frame(self) -> int:
         """The number of the first frame, mostly 1."""
         field = self.numbers("TRIAL", "ACTUAL_START_FIELD")
@@ -118,7 +118,8 @@ def described(head: bytes, clip: Clip) -> Clip:
     """Give a clip whose streams have the names, units and scales of the file's parameters.
 
     Coordinates and analog values of files of whole numbers are multiplied by their scales, so that
-    they are in their units; residuals are lengths. Points that are missing are NaN.
+    they are in their units; residuals and cameras stay as they are, ``point_scale`` in the metadata
+    makes lengths of residuals. Points that are missing are NaN.
 
     Parameters
     ----------
@@ -134,11 +135,10 @@ def described(head: bytes, clip: Clip) -> Clip:
 
 
 def _described(name: str, stream: Stream, told: Parameters) -> Stream:
-    scale = abs(told.number("POINT", "SCALE", told.of_header(12, _REAL))) or 1.0
     unit = "".join(told.texts("POINT", "UNITS")[:1])
     labels = told.texts("POINT", "LABELS")
     if name == POINTS:
-        values = stream.values if told.floats else stream.values * scale
+        values = stream.values if told.floats else stream.values * told.point_scale
         return _named(replace(stream, values=values), labels, [unit])
     if name == RESIDUALS:
         # -1 says that the point is not valid.
@@ -168,15 +168,12 @@ def _analog_scales(told: Parameters, channels: int) -> tuple[np.ndarray, np.ndar
 def _named(stream: Stream, labels: Sequence[str], units: Sequence[str]) -> Stream:
     """Give the columns the names of their groups, and units; a name that is there again, ``#2``."""
     columns = []
-    seen: dict[str, int] = {}
-    names: list[str] = []
+    groups = dict.fromkeys(column.name.partition(".")[0] for column in stream.columns)
+    told = dict(zip(groups, labels, strict=False))
+    names = distinct(told.get(group) or f"*{group}" for group in groups)
     for column in stream.columns:
         group, _, kind = column.name.partition(".")
         place = int(group) - 1
-        if place == len(names):
-            label = labels[place] if place < len(labels) and labels[place] else f"*{group}"
-            count = seen[label] = seen.get(label, 0) + 1
-            names.append(label if count == 1 else f"{label}#{count}")
         unit = units[place] if place < len(units) else units[-1] if len(units) == 1 else ""
         alone = kind in ("residual", "cameras", "analog")
         name = names[place] if alone else f"{names[place]}.{kind}"
@@ -190,6 +187,7 @@ def _facts(told: Parameters) -> dict[str, str]:
     facts = {
         "encoding": f"{_NAMES[told.processor]}, {'floats' if told.floats else 'whole numbers'}",
         "first_frame": str(told.first_frame),
+        "point_scale": repr(told.point_scale),
     }
     if makers:
         facts["vendor"] = ", ".join(dict.fromkeys(filter(None, makers)))

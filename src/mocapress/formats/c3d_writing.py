@@ -4,16 +4,26 @@ import json
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mocapress.errors import UnsupportedError
-from mocapress.formats.c3d_parameters import ANALOG, CAMERAS, POINTS, RESIDUALS
+from mocapress.formats.table_writing import with_frames
 from mocapress.motion import Clip, Column, Stream
 from mocapress.motion.kinematics import positions
+from mocapress.motion.markers import ANALOG, CAMERAS, POINTS, RESIDUALS, WHOLE_WORD
 
 T = TypeVar("T")
+_OF_PLATES = (
+    ("TYPE", "<i2", 1),
+    ("CORNERS", "<f4", 3),
+    ("ORIGIN", "<f4", 3),
+    ("CHANNEL", "<i2", 1),
+    ("CAL_MATRIX", "<f4", 6),
+)
+"""Parameters of force plates: name, type of the numbers, and how many stand in a column."""
 _BLOCK = 512
 _INTEL = 84
 _LISTED = 255
@@ -42,7 +52,7 @@ def fit(clip: Clip) -> Clip:
             for kind in "xyz"
         )
         stream = Stream(places.reshape(len(places), -1), columns, clip.frame_time)
-        return replace(clip, streams={POINTS: stream}, skeleton=None)
+        return with_frames(replace(clip, streams={POINTS: stream}, skeleton=None))
     kept = {name: streams[name] for name in (POINTS, RESIDUALS, CAMERAS, ANALOG) if name in streams}
     if POINTS not in kept and ANALOG not in kept:
         raise UnsupportedError("a C3D needs points or analog data")
@@ -53,7 +63,7 @@ def fit(clip: Clip) -> Clip:
             expected=f"a multiple of {first.frames} samples",
             found=str(kept[ANALOG].frames),
         )
-    return replace(clip, streams=kept, skeleton=None)
+    return with_frames(replace(clip, streams=kept, skeleton=None))
 
 
 def write(clip: Clip) -> dict[str, bytes]:
@@ -75,13 +85,18 @@ def write(clip: Clip) -> dict[str, bytes]:
     channels = analog.channels if analog else 0
     header[2:24] = (
         np.array([count, channels * samples, short_first, short_last, 0], "<u2").tobytes()
-        + np.float32(-1).tobytes()
+        + np.float32(-_point_scale(clip)).tobytes()
         + np.array([start, samples], "<u2").tobytes()
         + np.float32(rate).tobytes()
     )
     data = words.astype("<f4").tobytes()
     padding = b"\0" * (-len(data) % _BLOCK)
     return {".c3d": bytes(header) + section + data + padding}
+
+
+def _point_scale(clip: Clip) -> float:
+    """Give what residuals are multiplied by to be lengths."""
+    return abs(float(clip.metadata.get("point_scale", "1"))) or 1.0
 
 
 def _frames(clip: Clip, points: Stream | None, analog: Stream | None, samples: int) -> np.ndarray:
@@ -94,7 +109,7 @@ def _frames(clip: Clip, points: Stream | None, analog: Stream | None, samples: i
         residuals, cameras = clip.streams.get(RESIDUALS), clip.streams.get(CAMERAS)
         if residuals is not None and cameras is not None:
             word = 256 * cameras.values + residuals.values
-            fourth = np.where(cameras.values == 256, residuals.values, word)
+            fourth = np.where(cameras.values == WHOLE_WORD, residuals.values, word)
         fourth = np.where(missing, -1, fourth)
         filled = np.where(missing[:, :, None], 0, places)
         numbers = np.concatenate([filled, fourth[:, :, None]], axis=2)
@@ -118,7 +133,7 @@ def _parameters(
     labels = [column.name.removesuffix(".x") for column in points.columns[::3]] if points else []
     section.group("POINT")
     section.integers("USED", [len(labels)])
-    section.reals("SCALE", [-1.0])
+    section.reals("SCALE", [-_point_scale(clip)])
     section.reals("RATE", [rate])
     section.integers("DATA_START", [start])
     section.integers("FRAMES", [min(clip.frames, _MOST_SHORT)])
@@ -138,8 +153,7 @@ def _parameters(
     section.group("TRIAL")
     for name, number in (("START", first), ("END", first + clip.frames - 1)):
         section.integers(f"ACTUAL_{name}_FIELD", [number % 2**16, number // 2**16])
-    section.group("FORCE_PLATFORM")
-    section.integers("USED", [0])
+    _write_plates(section, clip)
     events = json.loads(clip.metadata.get("events", "[]"))[:_LISTED]
     if events:
         section.group("EVENT")
@@ -149,6 +163,23 @@ def _parameters(
         times = [(event["seconds"] // 60, event["seconds"] % 60) for event in events]
         section.reals("TIMES", [part for time in times for part in time], rows=2)
     return section.printed()
+
+
+def _write_plates(section: "_Section", clip: Clip) -> None:
+    """Append the parameters of force plates, whose samples are analog data."""
+    told = json.loads(clip.metadata.get("force_plates", "{}")) if ANALOG in clip.streams else {}
+    count = len(told.get("type", []))
+    section.group("FORCE_PLATFORM")
+    section.integers("USED", [count])
+    # Numbers of a plate stand together: corners of three each, columns of a matrix of six.
+    for name, kind, rows in _OF_PLATES:
+        numbers = told.get(name.lower(), [])
+        each = len(numbers) // count if count else 0
+        if each and each % rows == 0 and max(each // rows, count) <= _LISTED:
+            shape = [rows, each // rows, count] if rows > 1 else [each, count]
+            section.array(name, shape, np.array(numbers[: each * count], kind))
+    if told.get("zero"):
+        section.integers("ZERO", [int(number) for number in told["zero"]])
 
 
 class _Section:
@@ -166,13 +197,13 @@ class _Section:
     def integers(self, name: str, numbers: Sequence[int]) -> None:
         """Append whole numbers of 16 bits."""
         for part, own in _parts(name, numbers):
-            self._array(part, 2, [len(own)], np.array(own, "<u2").tobytes())
+            self.array(part, [len(own)], np.array(own, "<u2"))
 
     def reals(self, name: str, numbers: Sequence[float], rows: int = 1) -> None:
         """Append floats; in columns of so many where there are several rows."""
         for part, own in _parts(name, numbers, rows):
             shape = [len(own)] if rows == 1 else [rows, len(own) // rows]
-            self._array(part, 4, shape, np.array(own, "<f4").tobytes())
+            self.array(part, shape, np.array(own, "<f4"))
 
     def texts(self, name: str, texts: Sequence[str]) -> None:
         """Append texts."""
@@ -180,9 +211,13 @@ class _Section:
             encoded = [text.encode()[:_LISTED] for text in own]
             width = max(map(len, encoded), default=0)
             data = b"".join(text.ljust(width) for text in encoded)
-            self._array(part, -1, [width, len(own)], data)
+            self._parameter(part, -1, [width, len(own)], data)
 
-    def _array(self, name: str, kind: int, shape: list[int], data: bytes) -> None:
+    def array(self, name: str, shape: Sequence[int], numbers: NDArray[Any]) -> None:
+        """Append numbers, of which the first dimension runs fastest."""
+        self._parameter(name, numbers.itemsize, shape, numbers.tobytes())
+
+    def _parameter(self, name: str, kind: int, shape: Sequence[int], data: bytes) -> None:
         self._record(name, self._group, bytes([kind % 256, len(shape), *shape]) + data + b"\0")
 
     def _record(self, name: str, number: int, content: bytes) -> None:

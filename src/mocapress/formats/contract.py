@@ -12,6 +12,10 @@ from mocapress.formats.layout import Layout
 from mocapress.formats.problems import Problem
 from mocapress.motion import Clip, Column, Skeleton
 
+Near = Callable[[str, str], bytes | None]
+"""Gives the contents of a file beside a motion file, None where there is none: ``near("_motion",
+"_channels.tsv")`` that of ``walk_channels.tsv`` for ``walk_motion.tsv``."""
+
 
 class StoredLayout(Protocol):
     """Everything of a file that is not in its streams, where it is not rows of text."""
@@ -86,8 +90,11 @@ class Format:
     """
     read_layout: Callable[[bytes], StoredLayout] | None = None
     """Reads the record of a layout of the format's own. Without it, layouts are those of rows."""
-    describe: Callable[[Any, Clip], Clip] | None = None
-    """Gives streams as they are stored the names and units that such a layout knows."""
+    describe: Callable[[Any, Clip, Near], Clip] | None = None
+    """Gives streams as they are stored the names and units that such a layout knows, or a file
+    beside. Raises ``FormatError`` where that file does not fit; it is then left away."""
+    written: tuple[str, ...] = ()
+    """The suffixes that ``write`` is for, where it is not for all."""
     timed: bool = True
     """Whether files have to state their frame time."""
     companion: str | None = None

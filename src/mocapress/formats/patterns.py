@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mocapress import _core
 from mocapress.errors import CorruptError
 from mocapress.formats.number_formats import packed
-from mocapress.motion.clip import FrameTime
+from mocapress.motion.frame_time import FrameTime
 from mocapress.motion.number_format import NumberFormat
 from mocapress.motion.skeleton import Skeleton
 

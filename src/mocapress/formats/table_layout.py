@@ -34,7 +34,7 @@ NUMBERS, SAME, TEXTS, SERIES = range(4)
 
 _DELIMITERS = (b"\t", b",", b";", b" ")
 _NUMBER = re.compile(rb"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\Z")
-_MISSING = re.compile(rb"([-+]?(nan|na|n/a|null|none|-)(\(ind\))?)?\Z", re.IGNORECASE)
+MISSING = re.compile(rb"([-+]?(nan|na|n/a|null|none|-)(\(ind\))?)?\Z", re.IGNORECASE)
 _MOST_DATA = 2**28
 _MOST_COLUMNS = 2**16
 _SAMPLE = 48
@@ -286,7 +286,7 @@ def _is_row(line: bytes, delimiter: bytes) -> bool:
     cells = [cell.strip() for cell in line.split(delimiter)]
     numbers = sum(1 for cell in cells if _NUMBER.match(cell))
     others = sum(
-        1 for cell in cells if cell and not _NUMBER.match(cell) and not _MISSING.match(cell)
+        1 for cell in cells if cell and not _NUMBER.match(cell) and not MISSING.match(cell)
     )
     return numbers > 0 and numbers >= others
 
@@ -303,7 +303,7 @@ def _columns(of_columns: list[Cells]) -> tuple[tuple[TableColumn, ...], list[Val
     kept: list[Values] = []
     if numeric:
         missing = {
-            i: [bool(_MISSING.match(cell.strip())) for cell in of_columns[i]] for i in numeric
+            i: [bool(MISSING.match(cell.strip())) for cell in of_columns[i]] for i in numeric
         }
         stripped = [
             [
@@ -332,7 +332,7 @@ def _column_of_texts(cells: Cells) -> TableColumn | None:
         bare = cell.strip()
         if _NUMBER.match(bare):
             numbers += 1
-        elif _MISSING.match(bare):
+        elif MISSING.match(bare):
             missing += 1
     if numbers and 10 * (numbers + missing) >= 9 * len(cells):
         return None

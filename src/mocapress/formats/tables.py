@@ -12,20 +12,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.errors import FormatError
-from mocapress.formats.contract import Format, Split
+from mocapress.formats.bids import channels_beside
+from mocapress.formats.contract import Format, Near, Split
 from mocapress.formats.layout import NO_ROWS
 from mocapress.formats.table_layout import (
+    MISSING,
     NUMBERS,
     SAME,
     SERIES,
+    TableColumn,
     TableLayout,
     read_layout,
     series,
     split_table,
 )
+from mocapress.formats.table_writing import with_frames, write_csv
 from mocapress.motion import Clip, Column, Skeleton, Stream
-from mocapress.motion.clip import FrameTime
-from mocapress.motion.columns import numbered_columns
+from mocapress.motion.columns import distinct, numbered_columns
+from mocapress.motion.frame_time import FrameTime
 
 CSV = "csv"
 """Id of the format."""
@@ -76,8 +80,8 @@ def names_of(layout: TableLayout) -> list[str]:
     for cells in reversed(header_lines(layout)):
         named = cells[:width]
         if len(named) == width and sum(map(bool, named)) * 2 > width:
-            return [name or f"column {i + 1}" for i, name in enumerate(named)]
-    return [f"column {i + 1}" for i in range(width)]
+            return [name or _unnamed(i) for i, name in enumerate(named)]
+    return [_unnamed(i) for i in range(width)]
 
 
 def time_of(layout: TableLayout) -> FrameTime:
@@ -111,6 +115,17 @@ def full_values(layout: TableLayout, values: Values) -> dict[int, Values]:
     return found
 
 
+def _is_text(column: TableColumn, *, named: bool) -> bool:
+    """Tell a column that is one text from a channel that has no number in any row."""
+    if column.kind != SAME or not np.isnan(_number(column.text)):
+        return False
+    return not (named and MISSING.match(column.text.strip()))
+
+
+def _unnamed(place: int) -> str:
+    return f"column {place + 1}"
+
+
 def _number(cell: bytes) -> float:
     try:
         return float(cell)
@@ -118,28 +133,31 @@ def _number(cell: bytes) -> float:
         return float("nan")
 
 
-def described(layout: Any, clip: Clip) -> Clip:
-    """Give the columns of numbers, with their names."""
+def described(layout: Any, clip: Clip, near: Near) -> Clip:
+    """Give the columns of numbers, with their names; those of Motion-BIDS stand beside the file."""
     stream = clip.streams[TABLE]
     values, names = full_values(layout, stream.values), names_of(layout)
+    units, time = [""] * len(names), stream.frame_time
+    beside = channels_beside(near, len(names))
+    if beside is not None:
+        names, units = beside.names or names, beside.units or units
+        time = beside.frame_time or time
     kept = {
         place: column
         for place, column in values.items()
-        if layout.columns[place].kind != SAME or not np.isnan(column).all()
+        if not _is_text(layout.columns[place], named=names[place] != _unnamed(place))
     }
-    columns = named_columns([names[place] for place in kept])
+    named = named_columns([names[place] for place in kept])
+    columns = tuple(
+        replace(column, unit=units[place]) for place, column in zip(kept, named, strict=True)
+    )
     matrix = np.stack(list(kept.values()), axis=1)
-    return replace(clip, streams={TABLE: Stream(matrix, columns, stream.frame_time)})
+    return replace(clip, streams={TABLE: Stream(matrix, columns, time)})
 
 
 def named_columns(names: Sequence[str]) -> tuple[Column, ...]:
     """Give columns of names; one that is there again is ``name#2``."""
-    seen: dict[str, int] = {}
-    columns = []
-    for place, name in enumerate(names):
-        count = seen[name] = seen.get(name, 0) + 1
-        columns.append(Column(name if count == 1 else f"{name}#{count}", place, "v"))
-    return tuple(columns)
+    return tuple(Column(name, place, "v") for place, name in enumerate(distinct(names)))
 
 
 def _recognised(head: bytes) -> bool:
@@ -161,6 +179,10 @@ FORMAT = Format(
     suffixes=(".csv", ".tsv", ".mot", ".sto"),
     recognises=_recognised,
     split=split,
+    fit=with_frames,
+    write=write_csv,
+    written=(".csv",),
+    timed=False,
     read_layout=partial(read_layout, kind=CSV),
     describe=described,
 )

@@ -11,15 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.errors import FormatError, UnsupportedError
-from mocapress.formats.c3d_parameters import POINTS
-from mocapress.formats.contract import Format, Split
+from mocapress.formats.contract import Format, Near, Split
 from mocapress.formats.number_formats import SHORTEST, printed
 from mocapress.formats.problems import EXTRA_ROWS, MISSING_ROWS, Problem
-from mocapress.formats.table_layout import TableLayout, read_layout
+from mocapress.formats.table_layout import SERIES, TableLayout, read_layout
+from mocapress.formats.table_writing import blank, counted, with_frames
 from mocapress.formats.tables import TABLE, full_values, header_lines
 from mocapress.formats.tables import split as split_table
 from mocapress.motion import Clip, Column, Skeleton, Stream
-from mocapress.motion.clip import short_decimal
+from mocapress.motion.columns import distinct
+from mocapress.motion.frame_time import short_decimal
+from mocapress.motion.markers import POINTS
 
 Values = NDArray[np.float64]
 
@@ -71,13 +73,13 @@ def _problems(layout: TableLayout, facts: dict[str, str]) -> list[Problem]:
     return [Problem.of(name, what, expected=told, found=str(layout.rows))]
 
 
-def described(layout: Any, clip: Clip) -> Clip:
+def described(layout: Any, clip: Clip, _: Near) -> Clip:
     """Give the markers: x, y and z of each, with the names and the unit of the header."""
     stream = clip.streams[POINTS]
     values = full_values(layout, stream.values)
     lines = header_lines(layout)
     labels = next((line for line in reversed(lines) if line[0].startswith("Frame")), [])
-    names = [name for name in labels[_BEFORE:] if name]
+    names = distinct(name for name in labels[_BEFORE:] if name)
     places = [place for place in sorted(values) if place >= _BEFORE]
     count = min(len(names) or len(places) // 3, len(places) // 3)
     if not count:
@@ -91,7 +93,10 @@ def described(layout: Any, clip: Clip) -> Clip:
         for i in range(len(kept))
     )
     matrix = np.stack([values[place] for place in kept], axis=1)
-    return replace(clip, streams={POINTS: Stream(matrix, columns, stream.frame_time)})
+    first = layout.columns[0].first if layout.columns[0].kind == SERIES else 1
+    facts = {"first_frame": str(int(first))}
+    streams = {POINTS: Stream(matrix, columns, stream.frame_time)}
+    return replace(clip, streams=streams, metadata={**clip.metadata, **facts})
 
 
 def fit(clip: Clip) -> Clip:
@@ -105,12 +110,13 @@ def fit(clip: Clip) -> Clip:
     """
     if POINTS not in clip.streams:
         raise UnsupportedError("a TRC needs points")
-    return replace(clip, streams={POINTS: clip.streams[POINTS]}, skeleton=None)
+    return with_frames(replace(clip, streams={POINTS: clip.streams[POINTS]}, skeleton=None))
 
 
 def write(clip: Clip) -> dict[str, bytes]:
     """Print a clip that was made to fit; missing points are blank."""
     stream = clip.streams[POINTS]
+    count = counted(clip, stream)
     time = Fraction(stream.frame_time or 0)
     rate = str(short_decimal(1 / time)) if time else "0"
     labels = [column.name.rpartition(".")[0] for column in stream.columns[::3]]
@@ -121,22 +127,17 @@ def write(clip: Clip) -> dict[str, bytes]:
     lines = [
         ["PathFileType", "4", "(X/Y/Z)", f"{clip.name or 'clip'}.trc"],
         [*names, *more],
-        [rate, rate, frames, str(len(labels)), unit, rate, "1", frames],
+        [rate, rate, frames, str(len(labels)), unit, rate, str(count.frame[0]), frames],
         ["Frame#", "Time", *(cell for label in labels for cell in (label, "", ""))],
         ["", "", *(f"{axis}{i + 1}" for i in range(len(labels)) for axis in "XYZ")],
         [],
     ]
     head = "\n".join("\t".join(cells) for cells in lines) + "\n"
-    cells = [
-        [cell if cell != b"nan" else b"" for cell in printed(row, SHORTEST)]
-        for row in stream.values
-    ]
-    moments: Values = np.arange(stream.frames, dtype=np.float64) * float(time)
-    times = printed(moments, SHORTEST)
-    rows = [
-        b"\t".join([str(i + 1).encode(), times[i], *row]) + b"\n" for i, row in enumerate(cells)
-    ]
-    return {".trc": head.encode() + b"".join(rows)}
+    times = np.zeros(stream.frames) if count.time is None else count.time
+    cells = [[str(frame).encode() for frame in count.frame.tolist()], printed(times, SHORTEST)]
+    cells += [blank(printed(numbers, SHORTEST), numbers) for numbers in stream.values.T]
+    rows = b"".join(b"\t".join(row) + b"\n" for row in zip(*cells, strict=True))
+    return {".trc": head.encode() + rows}
 
 
 FORMAT = Format(

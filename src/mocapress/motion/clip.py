@@ -2,43 +2,17 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from decimal import Decimal, localcontext
+from difflib import get_close_matches
 from fractions import Fraction
 from types import MappingProxyType
-from typing import Self
+from typing import Self, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapress.motion.frame_time import FrameTime
 from mocapress.motion.number_format import NumberFormat
 from mocapress.motion.skeleton import Skeleton
-
-FrameTime = Decimal | Fraction | None
-"""Seconds per frame, exactly; None where the source does not say."""
-
-
-def decimal_seconds(frame_time: Decimal | Fraction) -> Decimal:
-    """Give a frame time as a decimal: exactly where it is one, else the nearest short one."""
-    return frame_time if isinstance(frame_time, Decimal) else short_decimal(frame_time)
-
-
-def short_decimal(value: Fraction) -> Decimal:
-    """Give the decimal of fewest digits that differs by less than one part in 10**18.
-
-    So that a frame time of up to 17 digits comes back from the rate, and the rate from it. A
-    decimal of up to 20 digits stays as it is: it may have been made here before.
-    """
-    with localcontext() as context:
-        context.prec = 20
-        exact = Decimal(value.numerator) / Decimal(value.denominator)
-        if Fraction(exact) == value:
-            return exact.normalize()
-        for context.prec in range(1, 21):
-            short = Decimal(value.numerator) / Decimal(value.denominator)
-            if abs(Fraction(short) - value) * 10**18 < abs(value):
-                break
-    return short
-
 
 MOTION = "motion"
 """Name of the stream that holds the channels of a skeleton's joints."""
@@ -162,6 +136,57 @@ class Clip:
         """Number of channels of the first stream, C."""
         return self.main.channels
 
+    @property
+    def fps(self) -> float | None:
+        """Frames per second of the first stream; None where the source does not say."""
+        return None if self.frame_time is None else float(1 / Fraction(self.frame_time))
+
+    @property
+    def duration(self) -> float | None:
+        """Seconds that all frames of the first stream last; None where that is not known."""
+        return None if self.frame_time is None else float(Fraction(self.frame_time) * self.frames)
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """(F,) seconds from the first frame to each frame of the first stream.
+
+        Raises
+        ------
+        ValueError
+            When the frame time is not known; ``mp.retime(clip, fps)`` states it.
+
+        """
+        if self.frame_time is None:
+            msg = "the frame time is not known; mp.retime(clip, fps) states it"
+            raise ValueError(msg)
+        return np.arange(self.frames, dtype=np.float64) * np.float64(self.frame_time)
+
+    def __len__(self) -> int:
+        """Give the number of frames of the first stream."""
+        return self.frames
+
+    def __bool__(self) -> bool:
+        """Say yes, also of a clip without frames."""
+        return True
+
+    def joint(self, name: str) -> NDArray[np.float64]:
+        """Give the channels of a joint, (F, c) in the order of the columns.
+
+        Raises
+        ------
+        KeyError
+            When no column is a joint's of this name.
+
+        """
+        found = [
+            c
+            for c, column in enumerate(self.columns)
+            if column.joint >= 0 and column.name.rpartition(".")[0] == name
+        ]
+        if not found:
+            raise KeyError(name)
+        return self.values[:, found]
+
     def _repr_html_(self) -> str | None:
         """Play the clip in a notebook.
 
@@ -173,24 +198,35 @@ class Clip:
             return str(offer.load()(self)) if self.frames else None
         return None
 
-    def __getitem__(self, frames: slice) -> Self:
-        """Give some of the frames: ``clip[a:b:step]``, with Python's rules for slices.
+    @overload
+    def __getitem__(self, key: slice) -> Self: ...
 
-        The frame time follows the step: every second frame lasts twice as long. With a step below
-        zero the clip runs backwards. All streams have to share their frames.
+    @overload
+    def __getitem__(self, key: str) -> NDArray[np.float64]: ...
+
+    def __getitem__(self, key: slice | str) -> Self | NDArray[np.float64]:
+        """Give some of the frames, ``clip[a:b:step]``, or a column, ``clip["root.tx"]``.
+
+        Frames are taken by Python's rules for slices, and the frame time follows the step: every
+        second frame lasts twice as long. With a step below zero the clip runs backwards. All
+        streams have to share their frames. A column is (F,), of the first stream.
 
         Raises
         ------
+        KeyError
+            When there is no such column.
         TypeError
-            When it is no slice. One frame is ``clip[a : a + 1]``, or ``clip.values[a]``.
+            When it is neither. One frame is ``clip[a : a + 1]``, or ``clip.values[a]``.
         ValueError
             When the streams have different frames.
 
         """
-        if not isinstance(frames, slice):
-            msg = f"a clip takes a slice, such as clip[10:11], not {frames!r}"
+        if isinstance(key, str):
+            return self._column(key)
+        if not isinstance(key, slice):
+            msg = f"a clip takes a slice, such as clip[10:11], or a column's name, not {key!r}"
             raise TypeError(msg)
-        step = abs(range(self.frames)[frames].step)
+        step = abs(range(self.frames)[key].step)
         if any(
             (stream.frames, stream.frame_time) != (self.frames, self.frame_time)
             for stream in self.streams.values()
@@ -199,10 +235,17 @@ class Clip:
             raise ValueError(msg)
         frame_time = None if self.frame_time is None else self.frame_time * step
         streams = {
-            name: replace(stream, values=stream.values[frames], frame_time=frame_time)
+            name: replace(stream, values=stream.values[key], frame_time=frame_time)
             for name, stream in self.streams.items()
         }
         return replace(self, streams=streams)
+
+    def _column(self, name: str) -> NDArray[np.float64]:
+        names = [column.name for column in self.columns]
+        if name not in names:
+            near = get_close_matches(name, names, 3)
+            raise KeyError(f"{name!r}; near it are {near}" if near else name)
+        return self.values[:, names.index(name)]
 
     def with_values(self, values: NDArray[np.float64]) -> Self:
         """Give the same clip with other values in the first stream.

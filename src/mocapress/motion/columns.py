@@ -1,6 +1,6 @@
 """Columns of a skeleton's channels."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from mocapress import _core
 from mocapress.errors import FormatError
@@ -47,3 +47,13 @@ def bone_columns(
     if fault:
         raise FormatError(fault.what, expected=fault.expected, found=fault.found)
     return tuple(Column(*column) for column in columns)
+
+
+def distinct(names: Iterable[str]) -> list[str]:
+    """Give names of which one that is there again is ``name#2``."""
+    seen: dict[str, int] = {}
+    found = []
+    for name in names:
+        count = seen[name] = seen.get(name, 0) + 1
+        found.append(name if count == 1 else f"{name}#{count}")
+    return found

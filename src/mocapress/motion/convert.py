@@ -39,7 +39,7 @@ def with_rate(clip: Clip, fps: float | None = None, *, needed: bool = False) -> 
     if fps is not None:
         if not 0 < fps < float("inf"):
             raise ParameterError("fps", expected="a number above 0", found=str(fps))
-        return clip.with_frame_time(1 / Fraction(str(fps)))
+        return _at_rate(clip, 1 / Fraction(str(fps)))
     if clip.frame_time or not needed:
         return clip
     what = (
@@ -48,6 +48,17 @@ def with_rate(clip: Clip, fps: float | None = None, *, needed: bool = False) -> 
     )
     warnings.warn(MotionWarning("assumed-rate", MocapressError(what)), stacklevel=3)
     return clip.with_frame_time(Fraction(1, DEFAULT_FPS))
+
+
+def _at_rate(clip: Clip, frame_time: Fraction) -> Clip:
+    """Give the clip another frame time; what is sampled more often stays so."""
+    streams = {
+        name: replace(stream, frame_time=frame_time * Fraction(clip.frames, stream.frames))
+        for name, stream in clip.streams.items()
+        if stream.frames
+    }
+    made = clip.with_frame_time(frame_time)
+    return replace(made, streams={**made.streams, **streams})
 
 
 def to_bvh_clip(clip: Clip, fps: float | None = None) -> Clip:
@@ -155,7 +166,7 @@ def suggest_unit(skeleton: Skeleton) -> str | None:
 
 def _skeleton(clip: Clip) -> Skeleton:
     if clip.skeleton is None:
-        raise UnsupportedError("converting needs a skeleton; an AMC takes it from an ASF")
+        raise UnsupportedError("no skeleton", expected="one beside the file, or given (--asf)")
     return clip.skeleton
 
 

@@ -47,3 +47,26 @@ class Skeleton:
     """ASF ``length``: file units times this number are inches; None where nothing is said."""
     name: str = ""
     metadata: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the joints, in their order."""
+        return tuple(joint.name for joint in self.joints)
+
+    @property
+    def parents(self) -> tuple[int, ...]:
+        """Index of each joint's parent, -1 for the root."""
+        return tuple(joint.parent for joint in self.joints)
+
+    def index(self, name: str) -> int:
+        """Give the index of the first joint of this name.
+
+        Raises
+        ------
+        KeyError
+            When there is none.
+
+        """
+        if name not in self.names:
+            raise KeyError(name)
+        return self.names.index(name)

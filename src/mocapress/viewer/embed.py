@@ -7,14 +7,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from mocapress import api
 from mocapress.api.opening import Opened
 from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.exact import Exact
 from mocapress.container import Head, MczWriter, diffma_json, open_mcz
 from mocapress.errors import MocapressError, UnsupportedError
-from mocapress.motion import Clip
+from mocapress.motion import Clip, Stream
 from mocapress.motion.clip import MOTION
+from mocapress.motion.markers import ANALOG, POINTS, markers
 from mocapress.records import Reader
 from mocapress.source import DIFFMA_JSON, MCZ, Source
 from mocapress.viewer import page
@@ -75,7 +78,7 @@ def file(
 
 
 def exact(clip: Clip, name: str = "", *, level: int = LEVEL) -> dict[str, Any]:
-    """Give a clip's first stream, coded by ``exact``.
+    """Give a clip's first stream, of markers also analog data, coded by ``exact``.
 
     Raises
     ------
@@ -83,8 +86,21 @@ def exact(clip: Clip, name: str = "", *, level: int = LEVEL) -> dict[str, Any]:
         When a ``.mcz`` cannot hold the clip.
 
     """
-    blob = api.compress(Clip({MOTION: clip.main}, clip.skeleton), Exact(level=level))
+    streams = {MOTION: clip.main}
+    if POINTS in clip.streams:
+        streams = _recorded(clip)
+    blob = api.compress_clip(Clip(streams, clip.skeleton), Exact(level=level)).blob
     return _named(clip, name) | {"mcz": base64.b64encode(blob).decode()}
+
+
+def _recorded(clip: Clip) -> dict[str, Stream]:
+    """Give markers, without places that are not valid, and what is measured beside them."""
+    points, valid = clip.streams[POINTS], markers(clip).valid
+    values = np.where(np.repeat(valid, 3, axis=1), points.values, np.nan)
+    streams = {POINTS: replace(points, values=values)}
+    if ANALOG in clip.streams:
+        streams[ANALOG] = clip.streams[ANALOG]
+    return streams
 
 
 def assets(clips: Sequence[dict[str, Any]]) -> list[str]:
@@ -111,6 +127,8 @@ def _as_coded(source: Source, clip: Clip) -> bytes | None:
     mcz = Opened(source).mcz
     stream = mcz.head.streams[0] if mcz.head else None
     known = stream and f"wasm/{stream.codec.id}.wasm" in page.asset_names()
+    if POINTS in clip.streams:  # as the file has them, they are without names and scales
+        return None
     if stream is None or not known or stream.model or not mcz.closed:
         return None
     parts: list[bytes] = []

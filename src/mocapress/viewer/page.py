@@ -31,6 +31,8 @@ _VENDORED = {
 _DICTIONARY = "dictionary1.bin"
 _XZ = "vendor/xz/xz.wasm"
 _KINEMATICS = "wasm/kinematics.wasm"
+_COMMENT = re.compile(r"^[ \t]*(/\*\*\n.*?\*/|/\*\* .*?\*/|//.*?)\n", re.MULTILINE | re.DOTALL)
+"""Comments on lines of their own, which only developers need; licences stand in the document."""
 _IMPORT = re.compile(r"""(\b(?:from|import)\s*)(["'])([^"'\n]+)\2""")
 
 
@@ -147,7 +149,7 @@ def modules() -> dict[str, str]:
             return f'{match[1]}"module:{target}"'
 
         begun.add(path)
-        source = _IMPORT.sub(named, _text(path))
+        source = _IMPORT.sub(named, _COMMENT.sub("", _text(path)))
         done[path] = f"{source}\n//# sourceURL=mocapress/{path}\n"
 
     add(_MAIN)

@@ -1,5 +1,6 @@
 /**
  * Trace values over the width of a canvas; of many frames per pixel, the least and the largest.
+ * Where there is none, NaN, the curve is interrupted.
  *
  * @param {CanvasRenderingContext2D} context
  * @param {Float32Array|Float64Array} values (F,)
@@ -13,15 +14,21 @@ export function trace(context, values, box, [low, high]) {
   const last = Math.max(1, values.length - 1);
   const pixels = Math.max(1, Math.floor(width));
   context.beginPath();
+  let drawing = false;
+  const to = (x, value) => {
+    if (!Number.isNaN(value)) context[drawing ? "lineTo" : "moveTo"](x, y(value));
+    drawing = !Number.isNaN(value);
+  };
   if (values.length <= 2 * pixels) {
-    values.forEach((value, i) => context.lineTo(left + (i / last) * width, y(value)));
+    values.forEach((value, i) => to(left + (i / last) * width, value));
   } else {
     for (let pixel = 0; pixel <= pixels; pixel++) {
       const begin = Math.floor((pixel / (pixels + 1)) * values.length);
       const end = Math.max(begin + 1, Math.floor(((pixel + 1) / (pixels + 1)) * values.length));
-      const [least, most] = rangeOf(values.subarray(begin, end));
-      context.lineTo(left + pixel, y(least));
-      context.lineTo(left + pixel, y(most));
+      const some = values.subarray(begin, end);
+      const [least, most] = some.every(Number.isNaN) ? [NaN, NaN] : rangeOf(some);
+      to(left + pixel, least);
+      to(left + pixel, most);
     }
   }
 }

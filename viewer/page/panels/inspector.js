@@ -98,6 +98,7 @@ export class Inspector extends EventTarget {
       context.fillStyle = themeColour("--line");
       context.fillRect(0, box.top + box.height * (high / (high - low)), width, 1);
     }
+    drawGaps(context, series[0], box);
     context.lineJoin = "round";
     series.forEach((values, i) => {
       if (!values) return;
@@ -116,12 +117,12 @@ export class Inspector extends EventTarget {
     context.globalAlpha = 1;
     value.textContent = series
       .filter(Boolean)
-      .map((values, i) => short(values[this.takes[i].frameAt(this.player.time)]))
+      .map((values, i) => textAt(values, this.takes[i], this.player.time))
       .join("  ");
   }
 }
 
-/** Per joint its name, depth in the tree and columns; without a skeleton by parts of names. */
+/** Per joint, marker or analog channel its name, depth in the tree and columns; without a skeleton by parts of names. */
 function channelGroups(clip) {
   if (clip.skeleton) {
     const { joints, columns } = clip.skeleton;
@@ -132,6 +133,13 @@ function channelGroups(clip) {
     columns.forEach(([joint], column) => groups[joint]?.channels.push(column));
     return groups;
   }
+  if (clip.markers) {
+    const { labels } = clip.markers;
+    const groups = labels.map((name, i) => ({ name, depth: 0, channels: [0, 1, 2].map((k) => 3 * i + k) }));
+    const analog = clip.names.slice(3 * labels.length);
+    const own = analog.map((name, i) => ({ name, depth: 0, channels: [3 * labels.length + i] }));
+    return [...groups, ...own];
+  }
   const byName = new Map();
   clip.names.forEach((name, column) => {
     const joint = name.includes(".") ? name.slice(0, name.lastIndexOf(".")) : name;
@@ -139,6 +147,26 @@ function channelGroups(clip) {
     byName.get(joint).channels.push(column);
   });
   return [...byName.values()];
+}
+
+/** Rows where a marker is missing are shaded. */
+function drawGaps(context, values, box) {
+  context.fillStyle = themeColour("--error");
+  context.globalAlpha = 0.16;
+  const x = (i) => box.left + (i / Math.max(1, values.length - 1)) * box.width;
+  for (let i = 0; i < values.length; i++) {
+    if (!Number.isNaN(values[i])) continue;
+    const begin = i;
+    while (i < values.length && Number.isNaN(values[i])) i++;
+    context.fillRect(x(begin), 0, Math.max(1, x(i) - x(begin)), box.height + 6);
+  }
+  context.globalAlpha = 1;
+}
+
+/** The value at a time; of several values in a frame, the first. */
+function textAt(values, take, time) {
+  const value = values[take.frameAt(time) * Math.max(1, Math.round(values.length / take.frames))];
+  return Number.isNaN(value) ? "missing" : short(value);
 }
 
 function columnIn(take, name, column) {

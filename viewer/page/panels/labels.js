@@ -16,8 +16,9 @@ export function legend(lineup) {
     const rate = Math.round(100 / take.frameTime) / 100;
     const facts = [`${take.frames.toLocaleString("en")} frames`, `${rate} fps`];
     if (take.clip.frameTime === null) facts[1] += " assumed";
+    const kind = take.clip.markers ? "markers" : "joints";
     if (take.points)
-      facts.push(`${take.jointNames.length} joints`, `up ${axisName(take.bearings.up)}`);
+      facts.push(`${take.jointNames.length} ${kind}`, `up ${axisName(take.bearings.up)}`);
     if (take.clip.maxError) facts.push(`values ±${take.clip.maxError}`);
     const text = facts.join(" · ");
     const isNews = i === 0 || text !== first;

@@ -8,6 +8,8 @@
  * @property {number|null} frameTime seconds; null where the file does not say
  * @property {"deg"|"rad"} [angleUnit] of the channels, where not the skeleton's
  * @property {number} [maxError] that no value exceeds, where that was asked for
+ * @property {import("./markers.js").Markers} [markers] of clips of points; their channels are x, y and z
+ *     of each marker, NaN where it is missing, then analog ones, which may have several values a frame
  * @property {boolean} [more] whether these are only the first frames of many
  * @property {string[]} [notes] what the page should say of it
  */

@@ -1,10 +1,12 @@
 import { decode, DiffmaError } from "../../diffma/diffma.js";
 import { MczError } from "../../mcz/error.js";
 import { unpackXz } from "../../mcz/xz.js";
+import { readC3d } from "./c3d.js";
 import { FileError } from "./file_error.js";
 import { readMcz } from "./mcz.js";
 import { readAmc, readBvh } from "./motion_file.js";
 import { channelNames } from "./skeleton.js";
+import { readTrc } from "./trc.js";
 
 const MOST_JSON = 2 ** 29; // bytes: as long as a text can be in a browser
 
@@ -37,6 +39,10 @@ async function readFile(file, files, assets, early) {
       return readBvh(file.bytes, assets);
     case "amc":
       return readAmc(file.bytes, skeletonOf(file, among("asf")), assets);
+    case "c3d":
+      return readC3d(file.bytes, assets);
+    case "trc":
+      return readTrc(file.bytes);
     case "json":
       return fromDiffma(new TextDecoder().decode(file.bytes));
     case "xz": {
@@ -53,7 +59,7 @@ async function readFile(file, files, assets, early) {
       throw new FileError("a skeleton without motion", { expected: "an .amc dropped with it" });
     default:
       throw new FileError("not a file that this page plays", {
-        expected: ".bvh, .amc with its .asf, .mcz, or .diffma.json",
+        expected: ".bvh, .amc with its .asf, .c3d, .trc, .mcz, or .diffma.json",
       });
   }
 }

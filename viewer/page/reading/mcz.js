@@ -1,6 +1,9 @@
-import { decodeStream, openMcz } from "../../mcz/mcz.js";
+import { decodeStream, layoutOf, openMcz } from "../../mcz/mcz.js";
+import { describedC3d } from "./c3d.js";
 import { FileError } from "./file_error.js";
+import { markerClip } from "./markers.js";
 import { skeletonOfBones } from "./motion_file.js";
+import { describedTrc } from "./trc.js";
 
 const MOST_VALUES = 5e7; // 400 MB
 const LONG = 4096; // frames
@@ -21,10 +24,37 @@ export async function readMcz(bytes, models, beside, assets, early = false) {
   const mcz = await openMcz(bytes, assets);
   const main = mcz.streams.findIndex(({ kind }) => kind === "channels");
   if (main < 0) throw new FileError("no stream that this page knows");
-  const { columns, frameTime, name } = mcz.streams[main];
+  const stream = mcz.streams[main];
+  const markers = stream.name === "points" && stream.columns.length > 0;
   const total = mcz.chunks[main].reduce((sum, chunk) => sum + chunk.frames, 0);
-  const more = early && total > LONG;
+  const more = early && total > LONG && !markers;
   const frames = more ? mcz.chunks[main][0].frames : total;
+  const channels = await decoded(mcz, main, models, assets, frames);
+  const closed = mcz.closed ? [] : ["the recording was not closed"];
+  if (markers) {
+    const clip = await markersOf(mcz, stream, channels, frames, models, assets);
+    return { ...clip, notes: [...closed, ...clip.notes] };
+  }
+  const { columns, frameTime, name } = stream;
+  const unit = columns.find(({ kind }) => kind[0] === "r")?.unit;
+  const others = mcz.streams.filter((_, i) => i !== main).map((other) => other.name);
+  const radians = unit === "rad";
+  const { names, skeleton } = mcz.skeleton
+    ? ownSkeleton(mcz.skeleton, columns)
+    : await skeletonBeside(columns, beside, radians, assets);
+  const notes = [
+    skeleton ? "" : "no skeleton in this file: only its curves can be shown; drop the .asf with it",
+    ...closed,
+    others.length ? `only stream ${name} is shown, not ${others.join(", ")}` : "",
+  ];
+  const angleUnit = radians || unit === "deg" ? unit : undefined;
+  const own = { names, frames, channels, skeleton, frameTime, angleUnit };
+  return { ...own, notes: notes.filter(Boolean), more };
+}
+
+/** Decode the first frames of a stream: (F,) of each column. */
+async function decoded(mcz, index, models, assets, frames) {
+  const { columns } = mcz.streams[index];
   if (frames * columns.length > MOST_VALUES) {
     throw new FileError("too many frames and channels", {
       expected: `a product of at most ${MOST_VALUES}`,
@@ -32,29 +62,55 @@ export async function readMcz(bytes, models, beside, assets, early = false) {
     });
   }
   const channels = columns.map(() => new Float64Array(frames));
-  for await (const chunk of decodeStream(mcz, main, models, assets)) {
+  for await (const chunk of decodeStream(mcz, index, models, assets)) {
+    const end = Math.min(chunk.first + chunk.frames, frames);
     channels.forEach((channel, column) => {
-      const end = chunk.first + chunk.frames;
       for (let frame = chunk.first, at = column; frame < end; frame++, at += columns.length) {
         channel[frame] = chunk.values[at];
       }
     });
-    if (more) break;
+    if (end === frames) break;
   }
-  const unit = columns.find(({ kind }) => kind[0] === "r")?.unit;
-  const others = mcz.streams.filter((_, i) => i !== main).map((stream) => stream.name);
-  const radians = unit === "rad";
-  const { names, skeleton } = mcz.skeleton
-    ? ownSkeleton(mcz.skeleton, columns)
-    : await skeletonBeside(columns, beside, radians, assets);
-  const notes = [
-    skeleton ? "" : "no skeleton in this file: only its curves can be shown; drop the .asf with it",
-    mcz.closed ? "" : "the recording was not closed",
-    others.length ? `only stream ${name} is shown, not ${others.join(", ")}` : "",
-  ];
-  const angleUnit = radians || unit === "deg" ? unit : undefined;
-  const own = { names, frames, channels, skeleton, frameTime, angleUnit };
-  return { ...own, notes: notes.filter(Boolean), more };
+  return channels;
+}
+
+async function markersOf(mcz, { columns, frameTime }, channels, frames, models, assets) {
+  const found = async (name) => {
+    const index = mcz.streams.findIndex((stream) => stream.name === name);
+    if (index < 0) return null;
+    const count = mcz.chunks[index].reduce((sum, chunk) => sum + chunk.frames, 0);
+    return { stream: mcz.streams[index], values: await decoded(mcz, index, [], assets, count) };
+  };
+  const [cameras, analog] = [await found("cameras"), await found("analog")];
+  // A point whose fourth word is below 0 is not valid, wherever it is stored.
+  cameras?.values.forEach((seen, point) => {
+    for (let frame = 0; frame < frames; frame++) {
+      if (!(seen[frame] < 0)) continue;
+      for (let axis = 0; axis < 3; axis++) channels[3 * point + axis][frame] = NaN;
+    }
+  });
+  const described = await layoutOf(mcz, ["c3d", "trc"], assets);
+  if (described?.kind === "trc") return describedTrc(described.layout, channels);
+  if (described) {
+    for (let i = 0; i < 8; i++) described.layout.integer(); // how the numbers are laid out
+    const head = described.layout.prefixed();
+    return describedC3d(channels, analog?.values ?? [], frames, head, assets);
+  }
+  if (columns.length % 3) {
+    throw new FileError("points that are no places", { expected: "x, y and z of each" });
+  }
+  return markerClip({
+    labels: columns.filter((_, i) => i % 3 === 0).map(({ name }) => name.replace(/\.x$/, "")),
+    unit: columns[0].unit,
+    places: channels,
+    frames,
+    frameTime,
+    analog: (analog?.stream.columns ?? []).map(({ name, unit }, i) => ({
+      name,
+      unit,
+      values: analog.values[i],
+    })),
+  });
 }
 
 function ownSkeleton(skeleton, columns) {

@@ -47,7 +47,7 @@ export async function skeletonOfBones(asf, bones, radians, assets) {
 }
 
 /** The core's readers, which are used for one file. */
-async function formats(assets) {
+export async function formats(assets) {
   const { exports } = instantiate(await assets.module("wasm/formats.wasm"));
   const at = (place, count) => new Float64Array(exports.memory.buffer, place, count);
   const write = (...parts) => {
@@ -65,6 +65,10 @@ async function formats(assets) {
     read(isBvh, bytes, asf) {
       write(bytes, asf ?? new Uint8Array(0));
       return told(exports.read(isBvh, bytes.length, asf !== null, asf?.length ?? 0));
+    },
+    c3d(bytes) {
+      write(bytes);
+      return told(exports.c3d(bytes.length));
     },
     bones(asf, bones, radians) {
       write(asf, bones);

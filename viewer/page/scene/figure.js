@@ -14,9 +14,13 @@ const UP = new Vector3(0, 1, 0);
 const THINNEST = 0.007;
 const THICKEST = 0.026;
 const CHOSEN_BALL = 0.03;
+const [MARKER_BALL, MISSING_BALL, MARKER_BONE] = [0.016, 0.009, 0.005];
 const [SMALL_HEAD, LARGE_HEAD] = [0.06, 0.1];
 
-/** A skeleton on a stage: tapered bones from joint to joint, balls at the joints, a head. */
+/**
+ * A skeleton on a stage: tapered bones from joint to joint, balls at the joints, a head. Or markers:
+ * balls, and thin bones where they are known; a marker that is missing is a small ball where it was.
+ */
 export class Figure {
   /**
    * @param {import("../state/take.js").Take} take
@@ -27,10 +31,10 @@ export class Figure {
     this.colour = new Color(colour);
     this.group = new Group();
     this.places = new Float32Array(3 * take.points);
-    this.bones = [...take.parents.keys()].filter((point) => take.parents[point] >= 0);
     this.material = new MeshStandardMaterial({ roughness: 0.55, metalness: 0.05 });
     const cylinder = new CylinderGeometry(0.62, 1, 1, 14, 1, true).translate(0, 0.5, 0);
-    this.boneMesh = this.#mesh(cylinder, Math.max(1, this.bones.length));
+    this.boneMesh = this.#mesh(cylinder, Math.max(1, take.bones.length));
+    this.boneMesh.count = take.bones.length;
     this.ballMesh = this.#mesh(new SphereGeometry(1, 18, 12), Math.max(1, take.points));
     this.headMesh = this.#mesh(new SphereGeometry(1, 24, 18), 1);
     this.#measure();
@@ -52,11 +56,12 @@ export class Figure {
     const matrix = new Matrix4();
     const turn = new Quaternion();
     const [from, to, size] = [new Vector3(), new Vector3(), new Vector3()];
-    this.bones.forEach((point, i) => {
-      from.fromArray(places, 3 * take.parents[point]);
+    take.bones.forEach(([parent, point], i) => {
+      from.fromArray(places, 3 * parent);
       to.fromArray(places, 3 * point).sub(from);
-      const length = to.length();
-      const radius = this.grown * this.thickness[point];
+      const cut = take.isMissing(frame, parent) || take.isMissing(frame, point);
+      const length = cut ? 0 : to.length();
+      const radius = this.grown * this.thickness[i];
       turn.setFromUnitVectors(UP, length > 0 ? to.divideScalar(length) : UP);
       size.set(radius, length, radius);
       this.boneMesh.setMatrixAt(
@@ -73,7 +78,9 @@ export class Figure {
     });
     turn.identity();
     for (let point = 0; point < take.points; point++) {
-      const radius = this.grown * (point === this.chosen ? CHOSEN_BALL : this.balls[point]);
+      let usual = take.isMissing(frame, point) ? MISSING_BALL : this.balls[point];
+      if (take.isGone(frame, point)) usual = 0;
+      const radius = this.grown * (point === this.chosen ? CHOSEN_BALL : usual);
       from.fromArray(places, 3 * point);
       this.ballMesh.setMatrixAt(point, matrix.compose(from, turn, size.setScalar(radius)));
     }
@@ -88,7 +95,7 @@ export class Figure {
    * @param {Color} [mark] in this colour
    */
   paint(paint, chosen = -1, mark = this.colour) {
-    const { parents } = this.take;
+    const { bones, parents } = this.take;
     this.chosen = chosen;
     const colour = new Color();
     const of = (point, joint) => {
@@ -96,7 +103,7 @@ export class Figure {
       paint?.(point, colour);
       return joint === chosen ? colour.copy(mark) : colour;
     };
-    this.bones.forEach((point, i) => this.boneMesh.setColorAt(i, of(point, parents[point])));
+    bones.forEach(([parent, point], i) => this.boneMesh.setColorAt(i, of(point, parent)));
     parents.forEach((_, point) => this.ballMesh.setColorAt(point, of(point, point)));
     if (this.headEnd >= 0) this.headMesh.setColorAt(0, of(this.headEnd, parents[this.headEnd]));
     for (const mesh of this.#meshes) if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
@@ -126,24 +133,24 @@ export class Figure {
   #measure() {
     const { take } = this;
     this.grown = 1;
-    this.thickness = new Float32Array(take.points);
-    this.balls = new Float32Array(take.points).fill(THINNEST);
+    this.thickness = new Float32Array(take.bones.length).fill(MARKER_BONE);
+    this.balls = new Float32Array(take.points).fill(take.clip.markers ? MARKER_BALL : THINNEST);
     const [from, to] = [new Vector3(), new Vector3()];
     const place = [0, 0, 0];
     const isHead = (point) => /head$/i.test(take.jointNames[take.parents[point]] ?? "");
-    this.headEnd = this.bones.find(isHead) ?? -1;
+    this.headEnd = take.bones.find(([, point]) => isHead(point))?.[1] ?? -1;
     this.headMesh.visible = this.headEnd >= 0;
-    for (const point of this.bones) {
-      const parent = take.parents[point];
+    if (take.clip.markers) return;
+    take.bones.forEach(([parent, point], i) => {
       take.onStage(0, parent, place);
       from.fromArray(place);
       take.onStage(0, point, place);
       const length = from.distanceTo(to.fromArray(place));
       const radius = Math.min(THICKEST, Math.max(THINNEST, 0.1 * length));
-      this.thickness[point] = radius;
+      this.thickness[i] = radius;
       this.balls[parent] = Math.max(this.balls[parent], 1.12 * radius);
       this.balls[point] = Math.max(this.balls[point], 0.74 * radius);
-    }
+    });
     if (this.headEnd >= 0) this.balls[this.headEnd] = 0;
   }
 }

@@ -23,10 +23,19 @@ export function paint(lineup, stages, time, chosen, mark) {
       const decoded = comparison && figure.take === takes[1] && errorsShown;
       const isFirst = figure.take === takes[0];
       const marked = isFirst || comparison ? chosen : -1;
-      const painter = decoded ? painterOf(comparison, figure.take.frameAt(time)) : null;
+      const frame = figure.take.frameAt(time);
+      const painter = decoded ? painterOf(comparison, frame) : painterOfGaps(figure.take, frame);
       figure.paint(painter, i === stage.figures.length - 1 || isFirst ? marked : -1, mark);
     });
   }
+}
+
+/** Markers that are missing are red. */
+function painterOfGaps(take, frame) {
+  if (!take.clip.markers) return null;
+  return (point, colour) => {
+    if (take.isMissing(frame, point)) colour.copy(RED);
+  };
 }
 
 function painterOf({ errors, points, largest, frames }, frame) {

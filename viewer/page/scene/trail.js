@@ -49,7 +49,7 @@ function ribbon(take, step, count, height) {
   const way = new Float32Array(2 * count);
   const here = [0, 0, 0];
   for (let i = 0; i < count; i++) {
-    take.onStage(i * step, 0, here);
+    take.rootOnStage(i * step, here);
     way[2 * i] = here[0];
     way[2 * i + 1] = here[2];
   }

@@ -1,7 +1,8 @@
 const FRAMES = 240; // that are looked at, spread over the clip
 const USUAL_HEIGHT = 1.7;
-const UPPER = /head|neck|skull|face/i;
-const LOWER = /foot|toe|ankle|heel/i;
+const MANY = 20; // markers among which one may be a stray
+const UPPER = /head|neck|skull|face|[fb]hd$|^c7$|clav$/i;
+const LOWER = /foot|toe|ankle|heel|[lr](ank|hee)$/i;
 const AXES = [
   [1, 1],
   [2, 1],
@@ -28,12 +29,17 @@ const AXES = [
  * @param {number} points P
  * @param {string[]} names of the joints, the first of the points
  * @param {[number, number]} [given] the up axis, where it is known
+ * @param {Uint8Array} [gaps] of markers (F, P): not 0 where one is missing. Their way is that of their
+ *     middle; else it is that of the first point
  * @returns {Bearings}
  */
-export function findBearings(positions, points, names, given) {
-  const frames = sampled(positions, points);
+export function findBearings(positions, points, names, given, gaps) {
+  const frames = sampled(positions, points, gaps);
   const up = given ?? upAxis(frames, names);
-  const sizes = frames.map((frame) => Math.max(...[0, 1, 2].map((axis) => extent(frame, axis))));
+  const strays = gaps && points >= MANY ? 1 : 0;
+  const sizes = frames.map((frame) =>
+    Math.max(...[0, 1, 2].map((axis) => extent(frame, axis, strays))),
+  );
   const size = quantile(sizes, 0.75) || 1;
   const scale = USUAL_HEIGHT / size;
   const heights = frames.map((frame) => lowest(frame, up));
@@ -42,7 +48,8 @@ export function findBearings(positions, points, names, given) {
   const low = [Infinity, Infinity];
   const high = [-Infinity, -Infinity];
   for (const frame of frames) {
-    const root = turn(frame[0], frame[1], frame[2]);
+    const all = gaps ? points : 1;
+    const root = turn(...[0, 1, 2].map((axis) => mean(frame, [...Array(all).keys()], axis)));
     [root[0], root[2]].forEach((value, k) => {
       low[k] = Math.min(low[k], value);
       high[k] = Math.max(high[k], value);
@@ -78,16 +85,29 @@ export function nextUp([axis, sign]) {
   return AXES[(here + 1) % AXES.length];
 }
 
-function sampled(positions, points) {
+/** Some frames; markers that are missing in them stand in the middle of the others. */
+function sampled(positions, points, gaps) {
   const width = 3 * points;
   const count = width ? positions.length / width : 0;
   const step = Math.max(1, count / FRAMES);
   const frames = [];
   for (let at = 0; at < count; at += step) {
-    const frame = positions.subarray(Math.floor(at) * width, (Math.floor(at) + 1) * width);
+    let frame = positions.subarray(Math.floor(at) * width, (Math.floor(at) + 1) * width);
+    if (gaps) frame = withoutGaps(frame, gaps.subarray(Math.floor(at) * points));
     if (frame.every(Number.isFinite)) frames.push(frame);
   }
   return frames;
+}
+
+function withoutGaps(frame, gaps) {
+  const made = frame.slice();
+  const all = [...Array(frame.length / 3).keys()];
+  const seen = all.filter((point) => !gaps[point]);
+  for (let axis = 0; axis < 3 && seen.length; axis++) {
+    const middle = mean(frame, seen, axis);
+    for (const point of all) if (gaps[point]) made[3 * point + axis] = middle;
+  }
+  return made;
 }
 
 /**
@@ -141,14 +161,10 @@ function mean(frame, joints, axis) {
   return joints.reduce((sum, joint) => sum + frame[3 * joint + axis], 0) / joints.length;
 }
 
-function extent(frame, axis) {
-  let low = Infinity;
-  let high = -Infinity;
-  for (let i = axis; i < frame.length; i += 3) {
-    low = Math.min(low, frame[i]);
-    high = Math.max(high, frame[i]);
-  }
-  return high - low;
+/** How far points reach along an axis, but for so many strays at both ends. */
+function extent(frame, axis, strays = 0) {
+  const sorted = frame.filter((_, i) => i % 3 === axis).sort((a, b) => a - b);
+  return sorted.length ? sorted.at(-1 - strays) - sorted[strays] : -Infinity;
 }
 
 function lowest(frame, [axis, sign]) {

@@ -12,7 +12,7 @@
  */
 
 /**
- * Compare two takes of one skeleton; null where they are not that.
+ * Compare two takes of one skeleton or marker set; null where they are not that.
  *
  * @param {import("./take.js").Take} original
  * @param {import("./take.js").Take} decoded
@@ -46,24 +46,32 @@ export function compare(original, decoded) {
 
 function sameSkeleton(a, b) {
   if (!a.points || a.points !== b.points) return false;
+  if (a.clip.markers && a.jointNames.join("\n") !== b.jointNames.join("\n")) return false;
   return a.parents.every((parent, i) => parent === b.parents[i]);
 }
 
-/** Mean speed of a take's joints in each frame, in the file's units per second: (F,). */
+/**
+ * Mean speed of a take's joints in each frame, in the file's units per second: (F,). Markers that are
+ * missing, there or in the frame before, do not count.
+ */
 export function speeds(take) {
   const { points, positions, frames, frameTime } = take;
   const speed = new Float32Array(frames);
   for (let frame = 1; frame < frames && points; frame++) {
     let sum = 0;
-    for (let k = 3 * frame * points; k < 3 * (frame + 1) * points; k += 3) {
+    let counted = 0;
+    for (let point = 0; point < points; point++) {
+      if (take.isMissing(frame, point) || take.isMissing(frame - 1, point)) continue;
+      const k = 3 * (frame * points + point);
       const before = k - 3 * points;
+      counted++;
       sum += Math.hypot(
         positions[k] - positions[before],
         positions[k + 1] - positions[before + 1],
         positions[k + 2] - positions[before + 2],
       );
     }
-    speed[frame] = sum / points / frameTime;
+    speed[frame] = counted ? sum / counted / frameTime : 0;
   }
   if (frames > 1) speed[0] = speed[1];
   return speed;

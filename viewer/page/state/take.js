@@ -19,8 +19,23 @@ export class Take {
     this.parents = clip.parents;
     this.points = this.parents.length;
     this.positions = clip.positions;
-    this.jointNames = clip.skeleton ? clip.skeleton.joints.map((joint) => joint.name) : [];
-    this.standAs(findBearings(this.positions, this.points, this.jointNames));
+    const { skeleton, markers } = clip;
+    this.jointNames = skeleton ? skeleton.joints.map((joint) => joint.name) : [];
+    if (markers) this.jointNames = markers.labels.slice(0, markers.drawn);
+    /** Bones as pairs of points, of joints the parent first. */
+    this.bones = markers?.bones ?? this.parents.map((parent, i) => [parent, i]).filter(([p]) => p >= 0);
+    this.leading = markers ? mostSeen(clip.gaps, this.points) : [0];
+    this.standUp();
+  }
+
+  /** Whether a marker is missing in a frame. */
+  isMissing(frame, point) {
+    return Boolean(this.clip.gaps?.[frame * this.points + point]);
+  }
+
+  /** Whether it has not been seen yet, or will not be seen any more. */
+  isGone(frame, point) {
+    return this.clip.gaps?.[frame * this.points + point] === 2;
   }
 
   get seconds() {
@@ -44,9 +59,9 @@ export class Take {
     this.way = smoothed(this);
   }
 
-  /** Stand with another axis up. */
+  /** Stand with an axis up; without one, with that which seems to be. */
   standUp(up) {
-    this.standAs(findBearings(this.positions, this.points, this.jointNames, up));
+    this.standAs(findBearings(this.positions, this.points, this.jointNames, up, this.clip.gaps));
   }
 
   /** Place of a point on the stage, into `out`. */
@@ -59,10 +74,28 @@ export class Take {
     }
   }
 
+  /** Place of the root on the stage, of markers the middle of those most seen, into `out`. */
+  rootOnStage(frame, out) {
+    const sum = [0, 0, 0];
+    for (const point of this.leading) {
+      this.onStage(frame, point, out);
+      for (let i = 0; i < 3; i++) sum[i] += out[i];
+    }
+    for (let i = 0; i < 3; i++) out[i] = sum[i] / this.leading.length;
+  }
+
   /** Where a camera that follows should look, on the floor: [x, z]. */
   wayAt(frame) {
     return this.points ? [this.way[2 * frame], this.way[2 * frame + 1]] : [0, 0];
   }
+}
+
+/** A quarter of the markers, whose middle does not jump when others come and go. */
+function mostSeen(gaps, points) {
+  const missing = new Float64Array(points);
+  gaps.forEach((gap, i) => (missing[i % points] += Number(gap > 0)));
+  const all = [...missing.keys()].sort((a, b) => missing[a] - missing[b]);
+  return all.slice(0, Math.ceil(points / 4));
 }
 
 /** The root's way over the floor without its steps: (F, 2). */
@@ -73,7 +106,7 @@ function smoothed(take) {
   const sums = new Float64Array(2 * (frames + 1));
   const here = [0, 0, 0];
   for (let frame = 0; frame < frames; frame++) {
-    take.onStage(frame, 0, here);
+    take.rootOnStage(frame, here);
     sums[2 * frame + 2] = sums[2 * frame] + here[0];
     sums[2 * frame + 3] = sums[2 * frame + 1] + here[2];
   }

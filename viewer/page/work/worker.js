@@ -45,7 +45,9 @@ async function tell(message, { clips, errors }) {
       errors.push(messageOf(error, clip.name));
     }
   }
-  const buffers = made.flatMap(({ channels, positions }) => [...channels, positions].map(bufferOf));
+  const buffers = made.flatMap(({ channels, positions, gaps }) =>
+    [...channels, positions, ...(gaps ? [gaps] : [])].map(bufferOf),
+  );
   postMessage({ ...message, read: { clips: made, errors } }, [...new Set(buffers)]);
 }
 

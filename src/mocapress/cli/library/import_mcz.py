@@ -42,7 +42,7 @@ def import_mcz(
             name = f"{into.strip('/')}/{own}".lstrip("/")
             source = job.opened()
             if source.kind != MCZ:
-                raise CorruptError("not a .mcz file", file=str(job.source))
+                raise CorruptError("not compressed by mocapress", file=str(job.source))
             adder = library.adder(overwrite=True, models=places_for(job, given))
             return facts(adder.file(source, name, Extra(modified_of(source))))
 

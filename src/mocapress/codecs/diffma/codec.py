@@ -29,7 +29,7 @@ from mocapress.codecs.diffma.payload import (
 )
 from mocapress.errors import CorruptError, ParameterError, VerificationError
 from mocapress.motion import Clip, Column, Skeleton, Stream
-from mocapress.motion.clip import decimal_seconds
+from mocapress.motion.frame_time import decimal_seconds
 
 _MOST_FRAMES = 1 << 20
 

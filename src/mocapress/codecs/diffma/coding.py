@@ -1,6 +1,5 @@
 """Channels to opcodes and look-up tables, and back, in parallel."""
 
-import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
+from mocapress.codecs.threads import processors
 
 T = TypeVar("T")
 
@@ -106,7 +106,7 @@ class Coding:
 
 
 def _each_channel(work: Callable[[int], T], channels: int, frames: int) -> list[T]:
-    workers = min(os.cpu_count() or 1, channels)
+    workers = min(processors(), channels)
     if workers < 2 or channels * frames < _WORTH_THREADS:
         return [work(c) for c in range(channels)]
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate
 from typing import ClassVar
 
 import numpy as np
@@ -23,6 +24,7 @@ from mocapress.codecs.exact.header import pack_header, unpack_header
 from mocapress.codecs.exact.roles import Role, Roles, find_roles
 from mocapress.codecs.exact.skeletons import NONE, OWN_COUPLINGS, assumed, skeleton_of
 from mocapress.codecs.exact.start import Learned, Start, model_of, start_of
+from mocapress.codecs.threads import each
 from mocapress.errors import CorruptError, ParameterError
 from mocapress.motion import Column, Skeleton, Stream
 
@@ -97,11 +99,13 @@ class Exact(Codec):
         if model is None:
             roles, level = _smallest(roles, level, numbers)
         coder = _Coder(roles, level, start_of(model))
-        chunks = []
-        for first in range(0, stream.frames, self.chunk):
+
+        def coded(first: int) -> Chunk:
             rows = numbers[first : first + self.chunk]
             own = [mask[first : first + self.chunk] for mask in masks]
-            chunks.append(Chunk(first, len(rows), told.pack(coder.encode(rows)[0], own)))
+            return Chunk(first, len(rows), told.pack(coder.encode(rows)[0], own))
+
+        chunks = each(coded, range(0, stream.frames, self.chunk))
         other = level if level != self.level else None
         header = pack_header(roles, told, has_model=model is not None, level=other)
         return Encoded(header, tuple(chunks))
@@ -139,16 +143,19 @@ class Exact(Codec):
         values[:, roles.of(Role.CONSTANT)] = roles.constants
         copies = roles.of(Role.COPY)
         originals = [roles.originals[column] for column in copies]
-        row = 0
-        for chunk in chunks:
-            rows = values[row : row + chunk.frames]
-            if len(rows):
-                where = f"exact chunk from frame {chunk.first}"
-                payload, masks = told.unpack(chunk.payload, chunk.frames, where)
-                rows[:, coder.columns] = coder.decode(replace(chunk, payload=payload), len(rows))
-                rows[:, copies] = rows[:, originals]
-                told.restore(rows, masks)
-            row += chunk.frames
+
+        def fill(place: tuple[int, Chunk]) -> None:
+            first, chunk = place
+            rows = values[first : first + chunk.frames]
+            where = f"exact chunk from frame {chunk.first}"
+            payload, masks = told.unpack(chunk.payload, chunk.frames, where)
+            rows[:, coder.columns] = coder.decode(replace(chunk, payload=payload), len(rows))
+            rows[:, copies] = rows[:, originals]
+            told.restore(rows, masks)
+
+        firsts = accumulate((chunk.frames for chunk in chunks[:-1]), initial=0)
+        places = zip(firsts, chunks, strict=True)
+        each(fill, [place for place in places if place[0] < len(values)])
         return values
 
     def _check_size(self, chunk: Chunk, coded: int) -> None:

@@ -1,0 +1,82 @@
+"""How far two clips of the same motion are from each other."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapress.errors import ParameterError
+from mocapress.motion.clip import Clip
+from mocapress.motion.kinematics import Array, positions
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Difference:
+    """Errors by channel and, with skeletons, by joint."""
+
+    channels: tuple[str, ...]
+    largest: Array
+    """(C,) largest error of each channel, in its unit; infinite where one of two is not finite."""
+    mean: Array
+    """(C,) mean error of each channel."""
+    psnr: float
+    """-10 log10 of the mean squared error of all values, dB; infinite without error."""
+    joints: tuple[str, ...] = ()
+    largest_distance: Array | None = None
+    """(J,) largest distance of each joint, length units of the file; None without skeletons."""
+    mean_distance: Array | None = None
+    """(J,) mean distance of each joint."""
+
+    @property
+    def most(self) -> float:
+        """The largest error of any channel."""
+        return float(self.largest.max(initial=0))
+
+
+def compare(first: Clip, second: Clip) -> Difference:
+    """Measure how far a clip is from another of the same frames and channels.
+
+    Parameters
+    ----------
+    first, second
+        Of the same columns, by name; angles count as numbers, so that 359 and -1 degrees differ by
+        360. Where both have a skeleton, positions of joints are compared, too, each clip's by its
+        own.
+
+    Raises
+    ------
+    ParameterError
+        When frames or columns differ.
+
+    """
+    names = tuple(column.name for column in first.columns)
+    if names != tuple(column.name for column in second.columns):
+        raise ParameterError("the clips have different channels")
+    if first.frames != second.frames:
+        raise ParameterError("frames", expected=str(first.frames), found=str(second.frames))
+    a, b = first.values, second.values
+    same = (a == b) | (np.isnan(a) & np.isnan(b))
+    with np.errstate(invalid="ignore", over="ignore"):
+        errors = np.abs(a - b)
+        errors[same] = 0
+        errors[~same & ~(np.isfinite(a) & np.isfinite(b))] = np.inf
+        square = float(np.square(errors).mean()) if errors.size else 0.0
+        psnr = float(-10 * np.log10(square)) if square else float("inf")
+    joints: tuple[str, ...] = ()
+    distances = None
+    if first.skeleton and second.skeleton and first.skeleton.names == second.skeleton.names:
+        joints = first.skeleton.names
+        distances = np.linalg.norm(positions(first) - positions(second), axis=2)
+    return Difference(
+        names,
+        errors.max(axis=0, initial=0),
+        _mean(errors),
+        psnr,
+        joints,
+        None if distances is None else distances.max(axis=0, initial=0),
+        None if distances is None else _mean(distances),
+    )
+
+
+def _mean(errors: Array) -> Array:
+    mean: Array = errors.sum(axis=0) / max(len(errors), 1)
+    return mean

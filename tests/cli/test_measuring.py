@@ -1,0 +1,47 @@
+"""``compare`` and ``stats``."""
+
+import json
+from pathlib import Path
+
+from running import mocapress
+
+SAMPLES = Path(__file__).parents[2] / "samples"
+WALK = SAMPLES / "mocapbank.bvh"
+
+
+def test_a_file_equals_what_it_is_compressed_to(tmp_path: Path) -> None:
+    packed = tmp_path / "walk.mcz"
+    assert mocapress("compress", "-1", WALK, "-o", packed).exit_code == 0
+    result = mocapress("compare", WALK, packed, "--max", 0)
+    assert result.exit_code == 0
+    assert "largest error 0, PSNR inf dB" in result.stdout
+
+
+def test_errors_are_shown_and_bounded(tmp_path: Path) -> None:
+    lossy = tmp_path / "lossy.mcz"
+    assert mocapress("compress", WALK, "--codec", "diffma:bound=4", "-o", lossy).exit_code == 0
+    result = mocapress("compare", WALK, lossy)
+    assert result.exit_code == 0
+    assert "channel " in result.stdout
+    assert "joint " in result.stdout
+    facts = json.loads(mocapress("compare", WALK, lossy, "--json").stdout)[0]
+    worst = facts["largest_error"]
+    assert worst == max(row["largest"] for row in facts["channels"]) > 0
+    assert mocapress("compare", WALK, lossy, "--max", worst).exit_code == 0
+    bounded = mocapress("compare", WALK, lossy, "--max", worst / 2)
+    assert bounded.exit_code == 3
+    assert "expected errors up to" in bounded.stderr
+
+
+def test_clips_that_do_not_match_are_wrong_usage() -> None:
+    result = mocapress("compare", WALK, SAMPLES / "cmu_01_01.amc")
+    assert result.exit_code == 2
+    assert "different channels" in result.stderr
+
+
+def test_statistics_of_joints_and_channels() -> None:
+    shown = mocapress("stats", WALK).stdout
+    assert "largest speed" in shown
+    facts = json.loads(mocapress("stats", WALK, "--json").stdout)[0]
+    assert facts["joints"][0]["way"] > 0
+    assert {row["missing"] for row in facts["channels"]} == {0}
