@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "coding/fail.hpp"
 #include "motion/angle.hpp"
 
 namespace mocapress::qssd {
@@ -28,8 +29,9 @@ inline double dot(const Quaternion& a, const Quaternion& b) {
 
 inline double length(double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); }
 
-// About an axis of length 1.
+// About an axis of length 1, by so few turns that they are one of motion.
 inline Quaternion about(const std::array<double, 3>& axis, double half_angle) {
+  if (!(std::fabs(half_angle) <= 1e6)) fail("an angle of more turns than any motion has");
   const Turn turn = turn_of_radians(half_angle);
   return {turn.cosine, turn.sine * axis[0], turn.sine * axis[1], turn.sine * axis[2]};
 }
@@ -44,8 +46,7 @@ inline Quaternion exponential(double x, double y, double z) {
 inline double angle_of(double y, double x) {
   constexpr double kPi = 3.141592653589793;
   const double a = std::fabs(y), b = std::fabs(x);
-  const double low = std::min(a, b), high = std::max(a, b);
-  if (!(high > 0)) return 0;
+  const double low = std::min(a, b), high = std::max(std::max(a, b), 1e-300);
   double tangent = 0, base = 0;  // the nearest of 0, pi/8 and pi/4
   if (low > 0.6681786379192989 * high) {
     tangent = 1;

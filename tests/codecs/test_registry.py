@@ -60,7 +60,15 @@ def other_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 def test_it_keeps_the_contract(other_package: str) -> None:
-    assert codecs.codec_ids() == ["exact", "app", "diffma", "broken", "deflated", "stranger"]
+    assert codecs.codec_ids() == [
+        "exact",
+        "app",
+        "diffma",
+        "qssd",
+        "broken",
+        "deflated",
+        "stranger",
+    ]
     test_contract.test_motion_comes_back(other_package, None)
     test_contract.test_decoding_can_begin_at_every_restart(other_package)
     test_contract.test_decoding_stops_where_it_is_asked_to(other_package)
@@ -99,7 +107,9 @@ def test_one_that_cannot_be_used_says_why(other_package: str) -> None:
         codecs.codec("broken")
     with pytest.raises(UnsupportedError, match=r"is not a mocapress\.codecs\.Codec"):
         codecs.codec("stranger")
-    with pytest.raises(ParameterError, match="unknown codec; expected exact, app, diffma, bro"):
+    with pytest.raises(
+        ParameterError, match="unknown codec; expected exact, app, diffma, qssd, bro"
+    ):
         codecs.codec("nothing")
 
 

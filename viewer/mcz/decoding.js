@@ -33,6 +33,9 @@ const CODECS = {
     const told = [whole(own, "bits", 6, 12), whole(own, "window", 64, MOST_CHUNK)];
     return { told, most: whole(own, "chunk", 2048, MOST_CHUNK), packed: true };
   },
+  qssd(own) {
+    return { told: [], most: whole(own, "chunk", 2048, MOST_CHUNK) };
+  },
 };
 
 function whole(parameters, name, usual, most) {

@@ -53,9 +53,7 @@ class Body:
         writer.numbers([fact for pair in facts for fact in pair])
         return bytes(writer.data)
 
-    def with_references(
-        self, turns: NDArray[np.float64], numbers: NDArray[np.float64]
-    ) -> "Body":
+    def with_references(self, turns: NDArray[np.float64], numbers: NDArray[np.float64]) -> "Body":
         """Take the mean of turns, (F, J, 4), and of numbers, (F, M), as the reference."""
         if not len(turns):
             return self

@@ -181,6 +181,4 @@ class QSSD(Codec):
         return body.with_references(turns, np.where(np.abs(numbers) < 1e12, numbers, 0.0))
 
     def _refuse(self, name: str, expected: str) -> Any:
-        raise ParameterError(
-            f"qssd:{name}", expected=expected, found=repr(getattr(self, name))
-        )
+        raise ParameterError(f"qssd:{name}", expected=expected, found=repr(getattr(self, name)))

@@ -18,7 +18,7 @@ _ATOM_STEPS = 128
 _FRAMES_PER_ATOM = 40
 _MOST_ATOMS = 400
 _MOST_WHILE_LEARNING = 8
-"""Atoms of a frame. The first of a frame shape the dictionary, and each costs as much as all before."""
+"""Atoms of a frame; more cost time, and shape the dictionary little."""
 _KINDS = 8
 """Kinds of stages of which the model has chances of zeros."""
 
@@ -116,11 +116,10 @@ class Training:
             whole[:, covered] = learned.dictionary
         steps = np.rint(whole * importance[:, None] * _ATOM_STEPS)
         used = (steps != 0).any(axis=(1, 2))
-        return np.clip(steps, -256, 256)[used]
+        limited: NDArray[np.float64] = np.clip(steps, -256, 256)[used]
+        return limited
 
-    def _chances(
-        self, body: Body, model: bytes, rounding: float, rest_rounding: float
-    ) -> bytes:
+    def _chances(self, body: Body, model: bytes, rounding: float, rest_rounding: float) -> bytes:
         """Count how often each number is 0 in each kind of stage, as chances in 1/256."""
         header = self.header(None)
         columns = len(body.roles)
