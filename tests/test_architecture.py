@@ -101,6 +101,7 @@ NAMES_FORMATS = {
     "container/diffma_json.py",
     "motion/convert.py",
     "motion/kinematics.py",
+    "motion/units.py",
 }
 
 

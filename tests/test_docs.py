@@ -60,6 +60,22 @@ def test_the_guide_to_markers_says_what_comes_out(monkeypatch: pytest.MonkeyPatc
     assert not found.failed
 
 
+def test_the_commands_for_markers_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "samples").mkdir()
+    for kind in ("c3d", "trc"):
+        shutil.copy(ROOT / f"samples/markers.{kind}", tmp_path / "samples")
+    monkeypatch.chdir(tmp_path)
+    guide = (ROOT / "docs/guide/markers.md").read_text()
+    commands = re.findall(r"^\$ mocapress (.+)$", guide, re.MULTILINE)
+    assert len(commands) > 5
+    for command in commands:
+        result = CliRunner().invoke(app, command.split())
+        assert result.exit_code == 0, (command, result.output)
+    for kind in ("c3d", "trc"):
+        restored = (tmp_path / f"restored/markers.{kind}").read_bytes()
+        assert restored == (ROOT / f"samples/markers.{kind}").read_bytes()
+
+
 def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for suffix in ("amc", "asf"):
         shutil.copy(ROOT / f"samples/cmu_01_01.{suffix}", tmp_path / f"walk.{suffix}")

@@ -88,6 +88,44 @@ bool Rig::stretches(const double* row) const {
                      [&](std::size_t c) { return row[c] != 0; });
 }
 
+std::vector<Rig::Action> Rig::actions() const {
+  std::vector<Action> found;
+  for (std::size_t j = 0; j < moves_.size(); ++j) {
+    for (const std::int64_t column : moves_[j].along) {
+      if (column >= 0) found.push_back({static_cast<std::size_t>(column), j, false});
+    }
+    for (const auto& [column, axis] : moves_[j].turns) found.push_back({column, j, true});
+  }
+  std::sort(found.begin(), found.end(),
+            [](const Action& a, const Action& b) { return a.column < b.column; });
+  return found;
+}
+
+void Rig::direct(const std::vector<Action>& actions, const double* row, const double* turns,
+                 Vector* directions) const {
+  for (std::size_t a = 0; a < actions.size(); ++a) {
+    const auto& [column, joint, turning] = actions[a];
+    const Move& move = moves_[joint];
+    Quaternion turn = {1, 0, 0, 0};
+    if (move.parent >= 0)
+      std::copy_n(turns + 4 * static_cast<std::ptrdiff_t>(move.parent), 4, turn.begin());
+    std::size_t axis = 0;
+    if (turning) {
+      if (move.framed) turn = product(turn, move.frame);
+      for (const auto& [other, about_axis] : move.turns) {
+        axis = about_axis;
+        if (other == column) break;
+        turn = product(turn, about(axis, row[other], radians_));
+      }
+    } else {
+      while (move.along[axis] != static_cast<std::int64_t>(column)) ++axis;
+    }
+    Vector unit{};
+    unit[axis] = 1;
+    directions[a] = turned(turn, unit);
+  }
+}
+
 Vector Rig::local_place(const Move& move, const double* row) const {
   Vector place = move.offset;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -38,6 +38,17 @@ class Rig {
   // Whether a frame stretches bones (ASF `l`), which has no kinematics here.
   bool stretches(const double* row) const;
 
+  // What a column does: it moves its joint, and all below, along a direction or turns it about one.
+  struct Action {
+    std::size_t column, joint;
+    bool turns;
+  };
+  // In the order of columns.
+  std::vector<Action> actions() const;
+  // The directions of these in space, of a frame in which joints have these turns.
+  void direct(const std::vector<Action>& actions, const double* row, const double* turns,
+              Vector* directions) const;
+
   // Relative to the parents: (J, 3) offset and channels together, and (J, 4).
   void place_locally(const double* row, double* places, double* turns) const;
   // In space: (points, 3) and the joints' (J, 4).

@@ -30,10 +30,17 @@ if TYPE_CHECKING:
     from mocapress.library import Library, StoredClip, open_library
     from mocapress.models import load_model, save_model, train
     from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton, Stream
+    from mocapress.motion.building import (
+        from_array,
+        from_positions,
+        from_quaternions,
+        to_dataframe,
+        to_xarray,
+    )
     from mocapress.motion.comparing import Difference, compare
     from mocapress.motion.convert import to_amc_clip, to_bvh_clip
-    from mocapress.motion.editing import concat, mirror, resample, retime
-    from mocapress.motion.kinematics import positions, rotations
+    from mocapress.motion.editing import concat, crop, mirror, resample, retime
+    from mocapress.motion.kinematics import positions, rotations, velocities
     from mocapress.motion.markers import (
         Event,
         ForcePlate,
@@ -76,9 +83,13 @@ __all__ = [
     "compare",
     "compress",
     "concat",
+    "crop",
     "decompress",
     "events",
     "force_plates",
+    "from_array",
+    "from_positions",
+    "from_quaternions",
     "load",
     "load_model",
     "markers",
@@ -93,8 +104,11 @@ __all__ = [
     "segments",
     "to_amc_clip",
     "to_bvh_clip",
+    "to_dataframe",
     "to_json",
+    "to_xarray",
     "train",
+    "velocities",
     "verify",
     "write",
     "writer",
@@ -112,9 +126,13 @@ _LAZY = {
     **dict.fromkeys(
         ("Clip", "Column", "Joint", "NumberFormat", "Skeleton", "Stream"), "mocapress.motion"
     ),
+    **dict.fromkeys(
+        ("from_array", "from_positions", "from_quaternions", "to_dataframe", "to_xarray"),
+        "mocapress.motion.building",
+    ),
     **dict.fromkeys(("Difference", "compare"), "mocapress.motion.comparing"),
-    **dict.fromkeys(("concat", "mirror", "resample", "retime"), "mocapress.motion.editing"),
-    **dict.fromkeys(("positions", "rotations"), "mocapress.motion.kinematics"),
+    **dict.fromkeys(("concat", "crop", "mirror", "resample", "retime"), "mocapress.motion.editing"),
+    **dict.fromkeys(("positions", "rotations", "velocities"), "mocapress.motion.kinematics"),
     **dict.fromkeys(
         (
             "Event",

@@ -273,6 +273,36 @@ def diffma_decode(opcodes: bytes, table: Annotated[NDArray[numpy.float64], dict(
     Fill ``values``; ValueError where opcodes, table and their number do not agree.
     """
 
+class NearMeasure:
+    """In what errors of `near` are measured."""
+
+def near_measure(skeleton: object | None, columns: Sequence[tuple[int, str]], radians: bool, radius: float, others: Sequence[float]) -> NearMeasure:
+    """
+    Measure at points ``radius`` along the joints' axes, or values without a skeleton.
+
+    ``others``: what an error of 1 counts in each channel that moves no joint.
+    """
+
+def near_levers(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], weights: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None,))]:
+    """Give the mean square of how far each channel moves the points, (C,)."""
+
+def near_errors(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], others: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
+    """
+    Give the errors of joints, (F, J), or without a skeleton of values, (F, C).
+    """
+
+def near_columns(apart: Sequence[int], joints: Sequence[int], parents: Sequence[int]) -> bytes:
+    """Code what columns have of their own, for the header."""
+
+def near_encode(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, scale: float, rate: float, weights: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], most: float, value_most: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], rounds: int) -> tuple[bytes, Annotated[NDArray[numpy.float64], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
+    """
+    Code rows as a chunk: its payload, the values that it decodes to, and the errors of
+    joints, (F, J), or without a skeleton of values, (F, C).
+    """
+
+def near_decode(header: bytes, payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """Fill ``values`` from a chunk; ValueError where it is none."""
+
 def qssd_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, model: bytes, most: int, rounding: float, rest_rounding: float, max_error: float) -> bytes:
     """Code rows of values as a chunk: core/qssd_learning/encoder.hpp."""
 

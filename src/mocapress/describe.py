@@ -11,7 +11,6 @@ from mocapress.container import diffma_json
 from mocapress.errors import MissingModelError
 from mocapress.models import Place, find_model
 from mocapress.motion import Clip, Stream
-from mocapress.motion.convert import suggest_unit
 from mocapress.motion.markers import (
     ANALOG,
     POINTS,
@@ -21,6 +20,7 @@ from mocapress.motion.markers import (
     force_plates,
     markers,
 )
+from mocapress.motion.units import suggest_unit
 from mocapress.source import Source
 
 

@@ -45,3 +45,12 @@ def test_statistics_of_joints_and_channels() -> None:
     facts = json.loads(mocapress("stats", WALK, "--json").stdout)[0]
     assert facts["joints"][0]["way"] > 0
     assert {row["missing"] for row in facts["channels"]} == {0}
+
+
+def test_what_is_compressed_is_read_wherever_motion_is(tmp_path: Path) -> None:
+    packed = tmp_path / "walk.mcz"
+    assert mocapress("compress", "-1", WALK, "-o", packed).exit_code == 0
+    assert mocapress("train", packed, "-o", tmp_path / "a.mcm").exit_code == 0
+    assert mocapress("stats", packed).exit_code == 0
+    assert mocapress("view", tmp_path, "--export", tmp_path / "page.html").exit_code == 0
+    assert mocapress("convert", packed, "-o", tmp_path / "walk.bvh").exit_code == 0

@@ -56,6 +56,19 @@ def test_a_grid_with_some_roundings_is_still_a_grid() -> None:
     assert size(twice) < 0.8 * size(as_floats(0.00519 * WALK))
 
 
+def test_a_grid_whose_middle_was_taken_off_is_still_a_grid() -> None:
+    # What is left near 0 has more digits than the grid, and now and then is not quite 0.
+    whole = np.rint(WALK)
+    volts = (whole * 0.000152588).astype(np.float32)
+    moved = (volts - volts.mean(axis=0, dtype=np.float32)).astype(np.float64)
+    moved[np.abs(moved) < 0.0001] = as_floats(np.array([6.1e-13]))[0]
+    told, _, _ = Told.find(moved)
+    assert len(told.table_of) == 6
+    assert all(told.table_of)
+    assert {table.step > 0 for table in told.tables} == {True}
+    assert size(moved) < 0.8 * size(as_floats(0.000152588 * WALK))
+
+
 def test_few_numbers_are_a_list() -> None:
     numbers = np.sort(as_floats(RANDOM.normal(size=40)))
     steps = np.clip(np.cumsum(RANDOM.integers(-1, 2, (1500, 3)), axis=0) + 20, 0, 39)

@@ -1,6 +1,7 @@
 """Tables of numbers come back byte for byte in every dialect, and say what they hold."""
 
 import random
+import warnings
 from fractions import Fraction
 from pathlib import Path
 
@@ -50,6 +51,22 @@ def test_numbers_of_every_format(number: str) -> None:
     assert mp.decompress(mp.compress(data)) == data
 
 
+@pytest.mark.parametrize("number", ["{:.16g}", "{:.6f}", "{:.9f}"])
+def test_float32_printed_as_decimals_are_coded_as_floats_and_read_as_printed(number: str) -> None:
+    places = markers(300).astype(np.float32).astype(np.float64)
+    floats, decimals = trc(places, number="{!r}"), trc(places, number=number)
+    sizes = [len(mp.compress(data, "exact:level=3")) for data in (floats, decimals)]
+    assert sizes[1] < 1.02 * sizes[0]
+    blob = mp.compress(decimals)
+    assert mp.decompress(blob) == decimals
+    expected = [[float(number.format(x)) for x in row] for row in places]
+    assert not np.array_equal(np.array(expected), places, equal_nan=True)
+    for clip in (mp.read(decimals), mp.load(blob)):
+        assert np.array_equal(clip.values, np.array(expected), equal_nan=True)
+    part = mp.load(blob, frames=slice(30, 33)).values  # so few that they could be anything
+    assert np.array_equal(part, np.array(expected)[30:33], equal_nan=True)
+
+
 def test_counters_and_times_are_no_numbers_to_code() -> None:
     layout = layout_of(trc(markers()), "walk.trc")
     assert [column.kind for column in layout.columns[:3]] == [SERIES, SERIES, NUMBERS]
@@ -64,7 +81,8 @@ def test_a_table_of_all_sorts_of_columns() -> None:
     data = odd_table()
     layout = layout_of(data)
     assert layout.verbatim == {61: b"broken,row"}
-    clip = mp.read(Path(__file__).parents[1] / "golden/v1_odd.csv")
+    with pytest.warns(mp.MotionWarning, match="line 64: a row of another length"):
+        clip = mp.read(Path(__file__).parents[1] / "golden/v1_odd.csv", strict=False)
     assert clip.frame_time == Fraction(1, 50)
     assert np.isnan(clip.values[50]).any()
     assert mp.decompress(mp.compress(data)) == data
@@ -123,3 +141,35 @@ def test_markers_are_written(tmp_path: Path) -> None:
     mp.write(clip, tmp_path / "again.c3d")
     floats = mp.read(tmp_path / "again.c3d").streams["points"].values
     assert np.allclose(floats, clip.values, equal_nan=True, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "fault"),
+    [
+        (b"\n30\t", b"\n30\t1.5\t", "line 36: a row of another length.*14 cells; found 15"),
+        (b"\n30\t", b"\nabc\r\n30\t", "line 36: a row of another length.*14 cells; found 1"),
+        (b"\n30\t0.242\t", b"\n30\t0.242\tx", "line 36: a cell that is no number"),
+    ],
+)
+def test_rows_that_are_broken_are_named_and_cost_no_others(
+    old: bytes, new: bytes, fault: str
+) -> None:
+    places = markers()
+    data = trc(places).replace(old, new, 1)
+    assert data != trc(places)
+    assert mp.decompress(mp.compress(data)) == data
+    for read in (mp.read, mp.load):
+        source = data if read is mp.read else mp.compress(data)
+        with pytest.raises(mp.FormatError, match=fault):
+            read(source)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", mp.MotionWarning)
+            clip = read(source, strict=False)
+        assert clip.frames in (149, 150)
+        assert np.allclose(clip.values[:28], np.round(places[:28], 5), equal_nan=True)
+        assert np.allclose(clip.values[-9:], np.round(places[-9:], 5), equal_nan=True)
+
+
+def test_what_stands_behind_a_table_is_named() -> None:
+    with pytest.warns(mp.MotionWarning, match="something behind the last row"):
+        assert mp.read(trc(markers()) + b"end of file\r\n").frames == 150

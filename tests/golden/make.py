@@ -118,7 +118,10 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_exact_cut.bvh": (WALK_BVH[:-700], "exact:level=2,chunk=80", {}),
     "v1_lossy.amc": (WALK_LF, "diffma:bits=7,chunk=100", {}),
     "v1_lossy.bvh": (WALK_BVH, "diffma:target_psnr=40.0,per=channel,order=auto,chunk=80", {}),
+    "v1_near.amc": (WALK_AMC, "near:quality=7,chunk=100", {}),
     # Together with the above they take every branch of the decoders (tests/reader).
+    "v1_couplings_near.bvh": (clips.couplings(), "near:quality=9,max=0.02", {}),
+    "v1_numbers_near.bvh": (clips.numbers(), "near:max_error=0.01", {}),
     "v1_random.bin": (random.Random(1).randbytes(200), "exact", {}),
     "v1_oddities.bvh": (clips.oddities(), "exact:chunk=12", {}),
     "v1_disorder.amc": (clips.disorder(), "exact:chunk=10", {}),

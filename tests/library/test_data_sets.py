@@ -8,7 +8,6 @@ import pytest
 
 import mocapress as mp
 from mocapress.library import Library
-from mocapress.library.windows import six_numbers
 
 BVH, BANK = "freebvh.bvh", "mocapbank.bvh"
 
@@ -52,15 +51,6 @@ def test_windows_of_columns_positions_and_rotations(two: Library, samples: Path)
         with pytest.raises(mp.ParameterError):
             two.windows(**wrong)
     two.close()
-
-
-def test_six_numbers_are_two_columns_of_the_matrix() -> None:
-    from scipy.spatial.transform import Rotation
-
-    turned = Rotation.random(50, random_state=3)
-    quaternions = turned.as_quat(scalar_first=True).reshape(10, 5, 4)
-    expected = turned.as_matrix()[:, :, :2].transpose(0, 2, 1).reshape(10, 5, 6)
-    assert np.allclose(six_numbers(quaternions), expected)
 
 
 def test_windows_can_be_pickled(two: Library) -> None:

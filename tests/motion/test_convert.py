@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 import mocapress as mp
 from mocapress.motion import Clip, Joint, Skeleton, convert
 from mocapress.motion.columns import skeleton_columns
-from mocapress.motion.convert import suggest_unit, to_amc_clip, to_bvh_clip
+from mocapress.motion.convert import to_amc_clip, to_bvh_clip
 from mocapress.motion.kinematics import positions
+from mocapress.motion.units import suggest_unit
 
 
 def same_places(before: Clip, after: Clip, tolerance: float) -> float:

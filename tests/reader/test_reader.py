@@ -33,6 +33,8 @@ CASES = [
     ("numbers.bvh", "app:t=4,table=k4-non-uniform,mantissa_limit=53,chunk=16"),
     ("couplings.bvh", "diffma:bits=8,chunk=30,max_error=0.01,per=channel,order=auto"),
     ("numbers.bvh", "diffma:order=2,chunk=16,window=3"),
+    ("couplings.bvh", "near:quality=8,chunk=200"),
+    ("numbers.bvh", "near:chunk=16"),
     ("skeleton.amc", "exact:level=1,chunk=13"),
     ("numbers.bvh", "exact:level=1"),
     ("numbers.bvh", "exact:level=2,chunk=16"),

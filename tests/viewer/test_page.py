@@ -173,7 +173,7 @@ def test_a_skeleton_alone_is_not_played(samples: Path) -> None:
         embed.file(samples / "cmu_01_01.asf")
 
 
-@pytest.mark.parametrize("codec", ["exact:level=9", "app", "diffma:bound=16"])
+@pytest.mark.parametrize("codec", ["exact:level=9", "app", "diffma:bound=16", "near"])
 def test_a_compressed_clip_is_embedded_as_it_is_coded(
     samples: Path, tmp_path: Path, codec: str
 ) -> None:

@@ -33,6 +33,9 @@ const CODECS = {
     const told = [whole(own, "bits", 6, 12), whole(own, "window", 64, MOST_CHUNK)];
     return { told, most: whole(own, "chunk", 2048, MOST_CHUNK), packed: true };
   },
+  near(own) {
+    return { told: [], most: whole(own, "chunk", 1024, MOST_CHUNK) };
+  },
   qssd(own) {
     return { told: [], most: whole(own, "chunk", 2048, MOST_CHUNK) };
   },

@@ -1,17 +1,20 @@
 """Motion files to clips and back."""
 
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 
 from mocapress import formats
 from mocapress.api.clips import compress_clip
+from mocapress.api.loading import load_source
 from mocapress.container import diffma_json
 from mocapress.errors import MocapressError, MotionWarning, UnsupportedError
 from mocapress.formats import Format
+from mocapress.models import Place
 from mocapress.motion import Clip
 from mocapress.motion.clip import MOTION
 from mocapress.motion.convert import with_rate
-from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, LIMIT, Named, Source
+from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, LIMIT, MCZ, Named, Source
 from mocapress.source import read as read_motion
 from mocapress.storage import ExistsError, write_all, write_whole
 
@@ -20,10 +23,11 @@ def read(
     source: Named,
     *,
     asf_path: str | Path | None = None,
+    models: Sequence[Place] = (),
     strict: bool = True,
     limit: int | None = LIMIT,
 ) -> Clip:
-    """Read a motion file: of any format, or DiffMA JSON.
+    """Read a motion file: of any format, compressed (``.mcz``; see ``load``), or DiffMA JSON.
 
     Parameters
     ----------
@@ -35,16 +39,21 @@ def read(
         that of the same name, of the subject, or the only one in the folder, which is warned of.
         ``metadata`` of the clip says which one was used (``skeleton``) and how it was found
         (``skeleton_found``). One that is broken or does not fit is left away with a warning.
+    models
+        Where to look for the model that a ``.mcz`` may need, as in ``decompress``.
     strict
         Whether a file that has lost frames is refused: one with fewer rows than it declares, or
         with rows that cannot be read. With ``strict=False`` it is read as far as possible, with a
         ``MotionWarning``; a row that cannot be read between others keeps the values of the one
         before. What loses nothing, such as a row more than declared, always is a warning.
     limit
-        Bytes that the numbers of a DiffMA JSON may be, 8 each: 4 GiB by default; None for any.
+        Bytes that the numbers of a ``.mcz`` or DiffMA JSON may be, 8 each: 4 GiB by default; None
+        for any.
 
     Raises
     ------
+    CorruptError
+        When a ``.mcz`` is damaged.
     FormatError
         When the file does not follow its format, or the given ASF cannot be read or is another's:
         with file, place, expected and found.
@@ -52,11 +61,19 @@ def read(
         When it cannot be opened.
 
     """
-    return read_source(Source(source, limit=limit), asf_path, strict=strict)
+    return read_source(Source(source, limit=limit), asf_path, models=models, strict=strict)
 
 
-def read_source(source: Source, asf_path: str | Path | None = None, *, strict: bool = True) -> Clip:
+def read_source(
+    source: Source,
+    asf_path: str | Path | None = None,
+    *,
+    models: Sequence[Place] = (),
+    strict: bool = True,
+) -> Clip:
     """Read a motion file; see ``read``."""
+    if source.kind == MCZ:
+        return load_source(source, asf_path=asf_path, models=models, strict=strict)
     if source.kind == DIFFMA_JSON:
         return diffma_json.json_to_clip(source)
     return read_motion(source, asf_path, strict=strict)

@@ -20,6 +20,7 @@ from mocapress.container.limits import most_values
 from mocapress.errors import ParameterError, UnsupportedError, VerificationError
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.clip import MOTION
+from mocapress.motion.columns import named_columns
 from mocapress.storage import ExistsError
 
 _USUAL_CHUNK = 512
@@ -215,10 +216,7 @@ def writer(
 
     """
     made = codecs.codec(codec) if isinstance(codec, str) else codec
-    joints: dict[str, int] = {}
-    named = tuple(
-        column if isinstance(column, Column) else _column(column, joints) for column in columns
-    )
+    named = named_columns(columns)
     stream = Stream(np.empty((0, len(named))), named, _frame_time(rate))
     return Recording(path, Clip({name: stream}, skeleton), made, notes or {})
 
@@ -234,10 +232,3 @@ def _frame_time(rate: float | Fraction | Decimal | None) -> Fraction | None:
     if not is_storable_time(time):
         raise ParameterError("rate", expected="a number of up to 448 bits", found=str(rate))
     return time
-
-
-def _column(name: str, joints: dict[str, int]) -> Column:
-    """Make a column of its name; joints are numbered in the order of appearance."""
-    joint, _, kind = name.rpartition(".")
-    unit = {"r": "deg", "t": "length"}.get(kind[:1], "") if len(kind) == 2 else ""
-    return Column(name, joints.setdefault(joint, len(joints)), kind, unit)

@@ -38,9 +38,9 @@ def compare(
     debug: Debug = False,
 ) -> None:
     """Compare two clips of the same motion: errors by channel and joint, and the PSNR."""
+    from mocapress import api
     from mocapress.cli.batch import Job, run
     from mocapress.cli.models import open_models, places_for
-    from mocapress.cli.reading import read_clip
     from mocapress.errors import VerificationError
     from mocapress.motion.comparing import compare as measured
 
@@ -51,7 +51,8 @@ def compare(
         for path in (first, second):
             source = Job(path, path.parent).opened(limit)
             places = places_for(job, given)
-            clips.append(read_clip(source, asf, places, strict=not lenient))
+            clip = api.read_source(source, asf, models=places, strict=not lenient)
+            clips.append(clip)
         found = measured(*clips)
         facts: dict[str, Any] = {
             "second": str(second),

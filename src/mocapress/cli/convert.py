@@ -50,7 +50,6 @@ def convert(
     from mocapress import api
     from mocapress.cli.batch import STREAM, find, run
     from mocapress.cli.models import open_models, places_for
-    from mocapress.cli.reading import read_clip
     from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
     from mocapress.container import diffma_json
     from mocapress.formats import by_id, readable, suffixes
@@ -82,7 +81,8 @@ def convert(
     def work(job: "Job") -> dict[str, Any]:
         assert job.target is not None
         source = job.opened(limit)
-        clip = read_clip(source, asf, places_for(job, given), strict=not lenient)
+        places = places_for(job, given)
+        clip = api.read_source(source, asf, models=places, strict=not lenient)
         clip = with_rate(clip, fps, needed=made.timed)
         job.outputs |= api.printed(clip, made, job.target)
         if job.target == STREAM or is_stream(job.target):  # which has nothing beside it

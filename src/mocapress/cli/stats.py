@@ -22,9 +22,9 @@ def stats(
 
     Speeds are per second where the sampling rate is known, and per frame where it is not.
     """
+    from mocapress import api
     from mocapress.cli.batch import find, run
     from mocapress.cli.models import open_models, places_for
-    from mocapress.cli.reading import read_clip
     from mocapress.formats import readable, suffixes
     from mocapress.motion.statistics import statistics
 
@@ -32,7 +32,8 @@ def stats(
 
     def work(job: "Job") -> dict[str, Any]:
         source = job.opened(limit)
-        clip = read_clip(source, asf, places_for(job, given), strict=not lenient)
+        places = places_for(job, given)
+        clip = api.read_source(source, asf, models=places, strict=not lenient)
         return {"frames": len(clip), "seconds": clip.duration} | statistics(clip)
 
     files = find(inputs, (*suffixes(readable()), ".mcz"))

@@ -28,20 +28,20 @@ def train(
     debug: Debug = False,
 ) -> None:
     """Learn a model from clips, to compress similar clips with compress --model."""
-    from mocapress import codecs, models
+    from mocapress import api, codecs, models
     from mocapress.cli.batch import STREAM, Job, find, run, usage
     from mocapress.cli.report import say
     from mocapress.cli.targets import known_endings, refuse_other_kinds, refuse_sources
-    from mocapress.errors import FormatError, ParameterError
+    from mocapress.errors import MocapressError, ParameterError
     from mocapress.formats import readable, suffixes
-    from mocapress.source import Source, read
+    from mocapress.source import Source
 
     try:
         made = codecs.codec(codec or codecs.DEFAULT_CODEC)
         codecs.learner(made)
     except ParameterError as error:
         usage(f"--codec: {error}")
-    clips_named = [job.source for job in find(inputs, suffixes(readable()))]
+    clips_named = [job.source for job in find(inputs, (*suffixes(readable()), ".mcz"))]
     target = Path(output)
     if STREAM in (*clips_named, target):
         usage("train reads and writes files, not stdin and stdout")
@@ -53,8 +53,8 @@ def train(
     def clips() -> "Iterator[Clip]":
         for path in clips_named:
             try:
-                clip = read(Source(path))
-            except (FormatError, OSError) as error:
+                clip = api.read_source(Source(path))
+            except (MocapressError, OSError) as error:
                 left_out = f"{path}: {error.strerror}" if isinstance(error, OSError) else error
                 say(f"warning: left out: {left_out}")
                 continue

@@ -11,7 +11,9 @@ from mocapress.cli.options import Asf, Debug, Force, Lenient
 def view(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Motion files; given two, the second is compared with the first."),
+        typer.Argument(
+            help="Motion files, .mcz, or folders; given two, the second is compared with the first."
+        ),
     ] = None,
     export: Annotated[
         Path | None,
@@ -46,7 +48,7 @@ def view(
     from mocapress.storage import check_targets, write_whole
     from mocapress.viewer import embed, page
 
-    inputs = files or []
+    inputs = _found(files or [])
     refuse_other_kinds(str(export) if export else None, (".html",), known_endings())
     stated = max_error if export else None
     name = ""
@@ -83,6 +85,15 @@ def view(
         print(f"{export}: {len(document.encode())} bytes, {_exactness(stated)}")
     else:
         _serve(document, port, browser=browser)
+
+
+def _found(paths: list[Path]) -> list[Path]:
+    """Give the files that were named, and those below folders that were."""
+    from mocapress.cli.batch import find
+    from mocapress.formats import readable, suffixes
+
+    of_motion = suffixes(of for of in readable() if of.read_skeleton is None)
+    return [job.source for job in find(paths, (*of_motion, ".mcz"))] if paths else []
 
 
 def _serve(document: str, port: int, *, browser: bool) -> None:

@@ -60,6 +60,7 @@ _REGISTRY: dict[str, tuple[str, str]] = {
     "exact": ("mocapress.codecs.exact", "Exact"),
     "app": ("mocapress.codecs.app", "App"),
     "diffma": ("mocapress.codecs.diffma", "DiffMA"),
+    "near": ("mocapress.codecs.near", "Near"),
     "qssd": ("mocapress.codecs.qssd", "QSSD"),
 }
 

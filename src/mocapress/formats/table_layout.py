@@ -22,6 +22,7 @@ from mocapress.formats.number_formats import (
     unpacked,
     write_format,
 )
+from mocapress.formats.printed_floats import as_floats
 from mocapress.formats.rows import read_rows
 from mocapress.motion.number_format import NumberFormat
 from mocapress.records import Reader, Writer
@@ -33,7 +34,7 @@ NUMBERS, SAME, TEXTS, SERIES = range(4)
 """What a column holds: numbers of the stream, one text, any texts, or first + row * step."""
 
 _DELIMITERS = (b"\t", b",", b";", b" ")
-_NUMBER = re.compile(rb"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\Z")
+NUMBER = re.compile(rb"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\Z")
 MISSING = re.compile(rb"([-+]?(nan|na|n/a|null|none|-)(\(ind\))?)?\Z", re.IGNORECASE)
 _MOST_DATA = 2**28
 _MOST_COLUMNS = 2**16
@@ -284,10 +285,8 @@ def _rows(lines: list[bytes], delimiter: bytes) -> tuple[int, bytes, int, int, i
 def _is_row(line: bytes, delimiter: bytes) -> bool:
     """Tell whether most cells of a line are numbers, or no cell at all is anything else."""
     cells = [cell.strip() for cell in line.split(delimiter)]
-    numbers = sum(1 for cell in cells if _NUMBER.match(cell))
-    others = sum(
-        1 for cell in cells if cell and not _NUMBER.match(cell) and not MISSING.match(cell)
-    )
+    numbers = sum(1 for cell in cells if NUMBER.match(cell))
+    others = sum(1 for cell in cells if cell and not NUMBER.match(cell) and not MISSING.match(cell))
     return numbers > 0 and numbers >= others
 
 
@@ -302,9 +301,7 @@ def _columns(of_columns: list[Cells]) -> tuple[tuple[TableColumn, ...], list[Val
         columns.append(column)
     kept: list[Values] = []
     if numeric:
-        missing = {
-            i: [bool(MISSING.match(cell.strip())) for cell in of_columns[i]] for i in numeric
-        }
+        missing = {i: [not NUMBER.match(cell.strip()) for cell in of_columns[i]] for i in numeric}
         stripped = [
             [
                 b"0" if gone else cell.strip()
@@ -319,18 +316,18 @@ def _columns(of_columns: list[Cells]) -> tuple[tuple[TableColumn, ...], list[Val
             column = _column_of_numbers(of_columns[i], numbers, formats[place], missing[i])
             columns[i] = column
             if column.kind == NUMBERS:
-                kept.append(numbers)
+                kept.append(numbers if column.others else as_floats(numbers, column.format))
     return tuple(column for column in columns if column is not None), kept
 
 
 def _column_of_texts(cells: Cells) -> TableColumn | None:
     """Give the column where it holds no numbers, or one text."""
-    if len(set(cells)) == 1 and not _NUMBER.match(cells[0].strip()):
+    if len(set(cells)) == 1 and not NUMBER.match(cells[0].strip()):
         return TableColumn(SAME, text=cells[0])
     numbers = missing = 0
     for cell in cells:
         bare = cell.strip()
-        if _NUMBER.match(bare):
+        if NUMBER.match(bare):
             numbers += 1
         elif MISSING.match(bare):
             missing += 1
@@ -343,7 +340,7 @@ def _parsed(
     columns: list[Cells], missing: list[list[bool]]
 ) -> tuple[Values, tuple[NumberFormat, ...]]:
     """Give the numbers of cells, (F, C), and their formats; of other cells, 0."""
-    bare = [[cell if _NUMBER.match(cell) else b"0" for cell in cells] for cells in columns]
+    bare = [[cell if NUMBER.match(cell) else b"0" for cell in cells] for cells in columns]
     rows = list(zip(*bare, strict=True))
     lines = [b" ".join(row) for row in rows]
     text = b"\n".join(lines) + b"\n"
@@ -372,7 +369,9 @@ def _column_of_numbers(
     padded = any(cell[:1] == b" " for cell in cells)
     width = max(widths, key=lambda size: (widths[size], size)) if padded and widths else 0
     gone = Counter(cell for cell, own in zip(cells, missing, strict=True) if own)
-    text = gone.most_common(1)[0][0] if gone else b""
+    text, count = gone.most_common(1)[0] if gone else (b"", 0)
+    if count == 1 and not MISSING.match(text.strip()):
+        text = b""  # no mark of what is missing, but one broken cell
     width = width if width < 2**8 else 0
 
     def with_others(column: TableColumn, values: Values | None) -> TableColumn:

@@ -15,8 +15,11 @@ from mocapress.errors import FormatError
 from mocapress.formats.bids import channels_beside
 from mocapress.formats.contract import Format, Near, Split
 from mocapress.formats.layout import NO_ROWS
+from mocapress.formats.printed_floats import as_printed
+from mocapress.formats.problems import BYTES_AFTER_END, UNREADABLE_ROWS, Problem
 from mocapress.formats.table_layout import (
     MISSING,
+    NUMBER,
     NUMBERS,
     SAME,
     SERIES,
@@ -55,18 +58,51 @@ def split(data: bytes, _skeleton: Skeleton | None, file: str | None, *, kind: st
         raise FormatError("no column of numbers", file=file, expected="a table of numbers")
     stream = Stream(values, numbered_columns(values.shape[1], ("v",)), time_of(layout))
     clip = Clip({TABLE: stream}, None, Path(file).stem if file else "")
-    return Split(clip, NO_ROWS, (), layout)
+    return Split(clip, NO_ROWS, tuple(problems_of(layout)), layout)
+
+
+def problems_of(layout: TableLayout) -> list[Problem]:
+    """Name rows that are left out, cells that are no numbers, and what stands behind the rows."""
+    found = []
+    first = layout.header.count(b"\n") + 1
+    broken = [(place, line) for place, line in layout.verbatim.items() if line.strip()]
+    if broken:
+        place, line = min(broken)
+        cells = line.count(layout.delimiter) + 1
+        what = "a row of another length, which is left out" + _and_more(len(broken))
+        width = f"{len(layout.columns)} cells"
+        found.append(Problem.of(UNREADABLE_ROWS, what, first + place, None, width, str(cells)))
+    odd = [
+        (row, text)
+        for column in layout.columns
+        for row, text in column.others.items()
+        if column.kind == NUMBERS
+        and not (NUMBER.match(text.strip()) or MISSING.match(text.strip()))
+    ]
+    if odd:
+        row, cell = min(odd)
+        at = first + row + sum(place <= row for place in layout.verbatim)
+        what = "a cell that is no number" + _and_more(len(odd))
+        found.append(Problem.of(UNREADABLE_ROWS, what, at, None, "a number", repr(text_of(cell))))
+    if layout.tail.strip():
+        found.append(Problem.of(BYTES_AFTER_END, "something behind the last row"))
+    return found
+
+
+def _and_more(count: int) -> str:
+    return f" (and {count - 1} more)" if count > 1 else ""
 
 
 def header_lines(layout: TableLayout) -> list[list[str]]:
     """Give the cells of the header's lines, without quotes."""
     lines = layout.header.split(layout.line_break)[:-1]
     return [
-        [text(cell).strip().strip('"') for cell in line.split(layout.delimiter)] for line in lines
+        [text_of(cell).strip().strip('"') for cell in line.split(layout.delimiter)]
+        for line in lines
     ]
 
 
-def text(data: bytes) -> str:
+def text_of(data: bytes) -> str:
     """Give a text, which may be in UTF-8 or ISO 8859-1."""
     try:
         return data.decode("utf-8-sig")
@@ -107,7 +143,8 @@ def full_values(layout: TableLayout, values: Values) -> dict[int, Values]:
     stored = iter(np.ascontiguousarray(values.T))
     for place, column in enumerate(layout.columns):
         if column.kind == NUMBERS:
-            found[place] = next(stored)
+            numbers = next(stored)
+            found[place] = numbers if column.others else as_printed(numbers, column.format)
         elif column.kind == SAME:
             found[place] = np.full(len(values), _number(column.text))
         elif column.kind == SERIES and len(values) == layout.rows:

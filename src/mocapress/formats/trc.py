@@ -52,7 +52,7 @@ def split(data: bytes, skeleton: Skeleton | None, file: str | None) -> Split:
     if rate > 0:
         stream = replace(stream, frame_time=1 / rate)
     clip = replace(clip, streams={POINTS: stream})
-    return parts._replace(clip=clip, problems=tuple(_problems(layout, facts)))
+    return parts._replace(clip=clip, problems=(*parts.problems, *_problems(layout, facts)))
 
 
 def _facts(layout: TableLayout) -> dict[str, str]:

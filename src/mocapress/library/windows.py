@@ -10,7 +10,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip
-from mocapress.motion.kinematics import local_rotations, positions
+from mocapress.motion.kinematics import positions, rotations
 
 if TYPE_CHECKING:
     from mocapress.library.reading import Reading
@@ -112,13 +112,5 @@ class Windows:
         if self.of == POSITIONS:
             return positions(clip)
         if self.of == ROTATIONS:
-            return six_numbers(local_rotations(clip))
+            return rotations(clip, local=True, form="6d")
         return clip.values
-
-
-def six_numbers(quaternions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give the first two columns of the matrices of unit quaternions: (..., 4) to (..., 6)."""
-    w, x, y, z = np.moveaxis(quaternions, -1, 0)
-    first = 1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)
-    second = 2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)
-    return np.stack([*first, *second], axis=-1)

@@ -13,6 +13,20 @@ def skeleton_columns(skeleton: Skeleton) -> tuple[Column, ...]:
     return tuple(Column(*column) for column in _core.skeleton_columns(skeleton))
 
 
+def named_columns(names: Sequence[Column | str]) -> tuple[Column, ...]:
+    """Give the columns of names such as ``root.tx``; joints are numbered as they appear."""
+    joints: dict[str, int] = {}
+    columns = []
+    for name in names:
+        if isinstance(name, Column):
+            columns.append(name)
+            continue
+        joint, _, kind = name.rpartition(".")
+        unit = {"r": "deg", "t": "length"}.get(kind[:1], "") if len(kind) == 2 else ""
+        columns.append(Column(name, joints.setdefault(joint, len(joints)), kind, unit))
+    return tuple(columns)
+
+
 def numbered_columns(count: int, kinds: tuple[str, ...]) -> tuple[Column, ...]:
     """Give columns in groups of these kinds, named by the number of their group, from 1 on."""
     size = len(kinds)

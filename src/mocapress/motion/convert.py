@@ -101,7 +101,7 @@ def to_bvh_clip(clip: Clip, fps: float | None = None) -> Clip:
         for i, joint in enumerate(skeleton.joints)
     )
     made = Skeleton(joints, "moving", "deg", skeleton.length_unit, skeleton.name)
-    angles = _zyx_degrees(local_rotations(clip))
+    angles = zyx_degrees(local_rotations(clip))
     values = [
         np.concatenate([placed[:, i], angles[:, i]] if moves[i] else [angles[:, i]], axis=1)
         for i in range(len(joints))
@@ -128,7 +128,7 @@ def to_amc_clip(clip: Clip) -> Clip:
     if sum(joint.parent < 0 for joint in skeleton.joints) != 1:
         raise UnsupportedError("an ASF has one root", expected="1")
     placed = translations(clip)
-    angles = _zyx_degrees(local_rotations(clip))[..., ::-1]
+    angles = zyx_degrees(local_rotations(clip))[..., ::-1]
     # The root's place is all in its channels; ASF's translations add to the offset.
     places = _rest_places(skeleton, placed)
     moves = [i == 0 or _varies(placed[:, i]) for i in range(len(skeleton.joints))]
@@ -141,27 +141,6 @@ def to_amc_clip(clip: Clip) -> Clip:
             np.concatenate([*parts, angles[:, i]], axis=1) if i >= 0 else angles[:, 0, :0]
         )
     return _finish(clip, made, values, NumberFormat(NumberKind.GENERAL, 9))
-
-
-def suggest_unit(skeleton: Skeleton) -> str | None:
-    """Say what unit the lengths of bones suggest, from the size of the figure at rest."""
-    if skeleton.length_unit not in (None, 1.0):
-        return f"1 unit is {2.54 / skeleton.length_unit:.4g} cm, as the ASF's length says"
-    places: list[Array] = []
-    for joint in skeleton.joints:
-        start = places[joint.parent] if joint.parent >= 0 else np.zeros(3)
-        places.append(start + (np.array(joint.offset) if joint.parent >= 0 else 0))
-    ends = [
-        places[i] + np.array(end) for i, joint in enumerate(skeleton.joints) for end in joint.ends
-    ]
-    extent = float(np.ptp(np.stack(places + ends), axis=0).max())
-    # A figure at rest is some 1.7 m high, or as wide with its arms out.
-    for unit, metres in (("m", 1), ("cm", 0.01), ("mm", 0.001), ("inches", 0.0254)):
-        if 1.3 <= extent * metres <= 2.3:
-            return f"{unit} (the figure measures {extent:.4g})"
-    if 1.3 <= extent * 0.0254 / 0.45 <= 2.3:
-        return f"CMU's, 5.644 cm (the figure measures {extent:.4g})"
-    return None
 
 
 def _skeleton(clip: Clip) -> Skeleton:
@@ -235,7 +214,7 @@ def _finish(clip: Clip, skeleton: Skeleton, values: list[Array], number: NumberF
     return Clip.of(matrix, columns, clip.frame_time, skeleton, clip.name)
 
 
-def _zyx_degrees(turn: Array) -> Array:
+def zyx_degrees(turn: Array) -> Array:
     """Give angles z, y, x with turn = Rz Ry Rx, (..., 4) to (..., 3), continuous over frames."""
     w, x, y, z = np.moveaxis(turn, -1, 0)
     sine = np.clip(2 * (w * y - x * z), -1, 1)

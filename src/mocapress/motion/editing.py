@@ -62,6 +62,29 @@ def _named(columns: Sequence[Column]) -> list[tuple[str, str]]:
     return [(column.name, column.unit) for column in columns]
 
 
+def crop(clip: Clip, start: float = 0, end: float | None = None) -> Clip:
+    """Give the frames of a clip from one time to another, the last not included.
+
+    Parameters
+    ----------
+    clip
+        With a frame time.
+    start, end
+        Seconds from the first frame; None is the end of the clip.
+
+    Raises
+    ------
+    UnsupportedError
+        When the clip's rate is not known.
+
+    """
+    if clip.frame_time is None:
+        raise UnsupportedError("the sampling rate of the clip is not known")
+    step = float(clip.frame_time)
+    first = max(round(start / step), 0)
+    return clip[first : None if end is None else max(round(end / step), first)]
+
+
 def retime(clip: Clip, fps: float) -> Clip:
     """Give the same frames at another rate: the first stream then lasts longer or shorter.
 

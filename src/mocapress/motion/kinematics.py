@@ -12,14 +12,17 @@ Conventions, with their evidence in docs/decisions/002-kinematics.md:
 The core does the work (``core/motion/kinematics.cpp``).
 """
 
+import re
+
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
-from mocapress.errors import UnsupportedError
+from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.motion.clip import Clip
 
 Array = NDArray[np.float64]
+_EULER = re.compile("(?!.*(.)\\1)[xyzXYZ]{3}")
 
 
 def positions(clip: Clip, *, end_sites: bool = False) -> Array:
@@ -47,16 +50,70 @@ def positions(clip: Clip, *, end_sites: bool = False) -> Array:
     return placed if end_sites else placed[:, : turned.shape[1]]
 
 
-def rotations(clip: Clip) -> Array:
-    """Give the joints' global rotations: (F, J, 4) unit quaternions, scalar first.
+def rotations(clip: Clip, *, local: bool = False, form: str = "quaternion") -> Array:
+    """Give the joints' rotations, in space or relative to their parents.
+
+    Parameters
+    ----------
+    clip
+        A clip with a skeleton.
+    local
+        Whether they are relative to the parents' rotations.
+    form
+        ``"quaternion"``, unit length and scalar first; ``"matrix"``; ``"6d"``, the first two
+        columns of the matrix; or three axes such as ``"zyx"``: the Euler angles of the product of
+        turns about these from left to right, in degrees, each about the axes already turned.
+
+    Returns
+    -------
+    array
+        (F, J, 4), (F, J, 3, 3), (F, J, 6) or (F, J, 3).
 
     Raises
     ------
+    ParameterError
+        When the form is unknown.
     UnsupportedError
         When the clip has no skeleton, or stretches bones.
 
     """
-    return _place(clip)[1]
+    turns = _place(clip, locally=local)[1]
+    if form == "quaternion":
+        return turns
+    if form not in ("matrix", "6d") and not _EULER.fullmatch(form):
+        raise ParameterError(
+            "form", expected='"quaternion", "matrix", "6d", "zyx"', found=repr(form)
+        )
+    from scipy.spatial.transform import Rotation
+
+    rotation = Rotation.from_quat(np.roll(turns.reshape(-1, 4), -1, axis=1))
+    if form not in ("matrix", "6d"):
+        angles: Array = rotation.as_euler(form.upper(), degrees=True)
+        return angles.reshape(*turns.shape[:2], 3)
+    matrices: Array = rotation.as_matrix().reshape(*turns.shape[:2], 3, 3)
+    if form == "matrix":
+        return matrices
+    return matrices[..., :2].swapaxes(-1, -2).reshape(*turns.shape[:2], 6)
+
+
+def velocities(clip: Clip) -> Array:
+    """Give the joints' velocities in space: (F, J, 3), length units of the file per second.
+
+    By differences over the frames before and after; at the ends, over one frame.
+
+    Raises
+    ------
+    UnsupportedError
+        When the clip has no skeleton, stretches bones, or its rate is not known.
+
+    """
+    if clip.frame_time is None:
+        raise UnsupportedError("velocities need the sampling rate; mp.retime states it")
+    placed = positions(clip)
+    if len(placed) < 2:
+        return np.zeros_like(placed)
+    speeds: Array = np.gradient(placed, float(clip.frame_time), axis=0)
+    return speeds
 
 
 def local_rotations(clip: Clip) -> Array:

@@ -15,7 +15,8 @@ _WIDEST = 2**23
 """Steps from one end of a grid to the other."""
 _NEAR = 0.2
 """In steps: how far from its place on the grid a number may lie while the grid is being found."""
-_MOST_MOVED = 0.5
+_ON_GRID = 0.97
+"""The least share of numbers that have to be on a grid; the others are told one by one."""
 
 
 def find_grid(distinct: Values) -> Grid | None:
@@ -28,16 +29,18 @@ def find_grid(distinct: Values) -> Grid | None:
     if len(wide) < _FEWEST - 1 or len(wide) < 0.9 * len(gaps):
         return None
     for share in (0.0, 0.02, 0.1, 0.3):
-        places = _places(distinct, gaps, wide, float(wide[int(share * (len(wide) - 1))]))
-        if places is not None:
-            found = _fitted(distinct, places)
+        on_grid = _places(distinct, gaps, wide, float(wide[int(share * (len(wide) - 1))]))
+        if on_grid is not None:
+            found = _fitted(*on_grid)
             if found is not None:
                 return found
     return None
 
 
-def _places(distinct: Values, gaps: Values, wide: Values, step: float) -> Places | None:
-    """Give places on a grid of about this step, counted from the first number."""
+def _places(
+    distinct: Values, gaps: Values, wide: Values, step: float
+) -> tuple[Values, Places] | None:
+    """Give numbers on a grid of about this step, all but a few, and their places from the first."""
     for _ in range(3):
         steps = np.rint(wide / step)
         near = (steps >= 1) & (steps <= 16)
@@ -68,10 +71,13 @@ def _places(distinct: Values, gaps: Values, wide: Values, step: float) -> Places
     places = np.rint((distinct - origin) / step)
     places -= places[0]
     origin = float(np.median(distinct - step * places))
-    off = np.abs((distinct - origin) / step - places)
-    if off.max() > 2 * _NEAR or (np.diff(places) < 1).any() or places[-1] >= _WIDEST:
+    on_grid = np.abs((distinct - origin) / step - places) <= 2 * _NEAR
+    # Of numbers that share a place, such as 0 and what rounding made of it, the first is on it.
+    on_grid[1:] &= np.diff(places) > 0
+    kept = places[on_grid] - places[on_grid][0] if on_grid.any() else places
+    if on_grid.mean() < _ON_GRID or kept[-1] >= _WIDEST or kept[-1] < 1:
         return None
-    return places.astype(np.int64)
+    return distinct[on_grid], kept.astype(np.int64)
 
 
 def _line(places: Values, numbers: Values) -> tuple[float, float]:
@@ -101,7 +107,7 @@ def _fitted(distinct: Values, places: Places) -> Grid | None:
                     best = missed, start, own, counted
                 if missed == 0:
                     return start, own, np.empty(0, np.int64), np.empty(0, np.int64)
-    if best is None or best[0] > _MOST_MOVED * len(distinct):
+    if best is None:
         return None
     _, start, own, counted = best
     given = (start + own * counted.astype(np.float64)).astype(np.float32)

@@ -20,6 +20,8 @@ Places = NDArray[np.int64]
 
 _GRID, _LIST = 0, 1
 _TRIED = 8
+_MOVED = 4.0
+"""Bits beside those of the distance that it costs to tell that a number is off its grid."""
 _BOXED = np.uint64(0x7FF80001 << 32)
 """Bits of a NaN in the place of a number that is not in the table; its float32 is below them."""
 _LOW = np.uint64(2**32 - 1)
@@ -136,7 +138,7 @@ class Tables:
                 best, number = gain, place + 1
         made = find_grid(distinct)
         grid = None if made is None else Table(*made)
-        listed = Table(numbers=distinct) if 4 * len(distinct) < len(moved) else None
+        listed = Table(numbers=distinct) if 2 * len(distinct) < len(moved) else None
         chosen = None
         for table in (grid, listed):
             gain = saved.by(table) if table is not None else 0.0
@@ -173,7 +175,7 @@ class _Saving:
             return 0.0
         if table.step:
             density = np.full(len(places), np.log2(table.step))
-            cost = 120.0 + 18 * len(table.places)
+            cost = 120.0 + float((np.log2(np.abs(table.away) + 1) + _MOVED).sum())
         else:
             gaps = np.diff(table.numbers)
             wide = np.minimum(places.astype(np.int64), len(gaps) - 1)

@@ -1,0 +1,72 @@
+// Curves of a channel: blocks of frames, each a line between two knots and sines upon it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "coding/bit.hpp"
+
+namespace mocapress::near {
+
+inline constexpr int kLongest = 256;  // frames of a block, and of a span of all channels
+inline constexpr int kShortest = 8;
+// Up to which sine a block has coefficients, by its class.
+inline constexpr std::array<int, 17> kEnds = {0,  1,  2,  3,  4,  6,   8,   11, 16,
+                                              22, 32, 45, 64, 90, 128, 181, 255};
+
+// Frames of the span that begins at a frame of a chunk, where so many are left: the first are
+// short, for there is nothing yet to learn from.
+inline int span_of(std::size_t first, std::size_t left) {
+  int length = first < 128 ? 64 : first < 256 ? 128 : kLongest;
+  while (length > kShortest && static_cast<std::size_t>(length / 2) >= left) length /= 2;
+  return length;
+}
+
+// How many classes a block of so many frames has.
+inline int classes_of(int length) {
+  int count = 0;
+  while (kEnds[static_cast<std::size_t>(count)] < length - 1) ++count;
+  return count + 1;
+}
+
+inline int end_of(int of_class, int length) {
+  return std::min(kEnds[static_cast<std::size_t>(of_class)], length - 1);
+}
+
+struct Block {
+  int start, length;  // in frames of the span
+  int of_class = 0;
+  // Its knot at [0], then its sines: `length` numbers within the channel's of the span.
+  std::int32_t* numbers = nullptr;
+};
+
+// Columns and what moves together with them: the joint of each, and the parent of each joint, both
+// counted in the order in which columns tell them.
+struct Joints {
+  std::vector<std::int32_t> of_column;
+  std::vector<std::int32_t> parents;  // smaller than the joint; -1 for none
+};
+
+// What all channels of a clip share, and what each has of its own.
+struct Plan {
+  double knot = 0.5;  // the step of knots, in steps of the channel
+  double first = 1;   // what a coefficient of 1 stands for, in steps
+  std::vector<double> steps;
+  Joints joints;
+};
+
+// 2^(exponent / 64), for -4096 <= exponent <= 4096.
+double step_of(int exponent);
+
+// The channel in the frames of a block that begins behind `left`.
+void draw(const Block& block, double left, double step, const Plan& plan, double* curve);
+
+// sqrt(2 / n) sin(pi k t / n) for t = 1 .. n - 1, of k = 1 .. n - 1; n a power of two.
+std::span<const double> sine(int length, int k);
+
+}  // namespace mocapress::near

@@ -1,0 +1,157 @@
+#include "near/codec.hpp"
+
+#include <algorithm>
+
+#include "coding/fail.hpp"
+#include "coding/record.hpp"
+#include "coding/sides.hpp"
+#include "near/coder.hpp"
+#include "near/marks.hpp"
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("no-tree-slp-vectorize")  // see blocks.cpp
+#endif
+
+namespace mocapress::near {
+namespace {
+
+constexpr int kMostExponent = 4096;
+
+class Decoding {
+ public:
+  Decoding(ByteView payload, double* values, std::size_t frames, const Plan& plan)
+      : side_(payload), values_(values), frames_(frames), plan_(plan) {}
+
+  void run() {
+    begin();
+    int length = 0;
+    for (std::size_t first = 0; first < frames_; first += static_cast<std::size_t>(length)) {
+      length = span_of(first, frames_ - first);
+      const std::size_t count =
+          std::min<std::size_t>(static_cast<std::size_t>(length), frames_ - first);
+      prediction_.begin_span(length);
+      for (std::size_t i = 0; i < coder_.channels.size(); ++i) span(i, first, length, count);
+      if (first + count < frames_) prediction_.end_span(count);
+    }
+    Marks marks(side_, frames_, plan_.steps.size());
+    marks.corrections({}, [&](const Correction& one) {
+      for (const auto& [channel, times] : one.added) {
+        at(one.frame, channel) += times * part_of(plan_.steps[channel], one.fineness);
+      }
+    });
+    marks.kept({}, [&](std::size_t channel, std::size_t frame, double value) {
+      at(frame, channel) = value;
+    });
+    if (!side_.exhausted()) fail("the payload is cut off, too long, or says what cannot be");
+  }
+
+ private:
+  double& at(std::size_t frame, std::size_t channel) {
+    return values_[frame * plan_.steps.size() + channel];
+  }
+
+  // Which channels move, and where each begins.
+  void begin() {
+    Bit moves[2];
+    Difference<6> firsts;
+    bool moved = true;
+    for (std::size_t c = 0; c < plan_.steps.size(); ++c) {
+      moved = side_.bit(moves[moved ? 1 : 0], false);
+      const auto number = static_cast<double>(firsts.code(side_, 0));
+      const double step = plan_.steps[c];
+      if (moved) {
+        Channel& channel = coder_.channels.emplace_back();
+        channel.index = c;
+        channel.last = number * (step * plan_.knot);
+      } else {
+        const double value = number * (step * 0.25);
+        for (std::size_t f = 0; f < frames_; ++f) at(f, c) = value;
+      }
+      if (!side_.sound()) fail("the payload is cut off");
+    }
+    prediction_ = prediction_of(coder_, plan_);
+  }
+
+  void span(std::size_t i, std::size_t first, int length, std::size_t count) {
+    Channel& channel = coder_.channels[i];
+    channel.begin_span(length);
+    double last = channel.last;
+    tree(i, 0, length, last);
+    if (!side_.sound()) fail("the payload is cut off");
+    std::array<double, kLongest> values;
+    prediction_.predict(i, values.data());
+    for (std::size_t f = 0; f < static_cast<std::size_t>(length); ++f) values[f] += curve_[f];
+    prediction_.tell(i, values.data(), curve_.data());
+    for (std::size_t f = 0; f < count; ++f) at(first + f, channel.index) = values[f];
+    channel.last = values[static_cast<std::size_t>(length) - 1];
+  }
+
+  void tree(std::size_t i, int start, int length, double& last) {
+    Channel& channel = coder_.channels[i];
+    const Block* const before = channel.blocks.empty() ? nullptr : &channel.blocks.back();
+    const Around around = coder_.around(i, before, start, length);
+    if (length > kShortest && coder_.split(side_, around, length, false)) {
+      tree(i, start, length / 2, last);
+      tree(i, start + length / 2, length / 2, last);
+      return;
+    }
+    Block block{start, length};
+    coder_.code(side_, i, around, block);
+    double* const curve = curve_.data() + start;
+    draw(block, last, plan_.steps[channel.index], plan_, curve);
+    last = curve[length - 1];
+    channel.blocks.push_back(block);
+  }
+
+  RangeReading side_;
+  double* values_;
+  std::size_t frames_;
+  const Plan& plan_;
+  Coder coder_;
+  Prediction prediction_;
+  std::array<double, kLongest> curve_{};
+};
+
+}  // namespace
+
+Prediction prediction_of(const Coder& coder, const Plan& plan) {
+  std::vector<std::size_t> columns;
+  std::vector<double> steps, firsts;
+  for (const Channel& channel : coder.channels) {
+    columns.push_back(channel.index);
+    steps.push_back(plan.steps[channel.index]);
+    firsts.push_back(channel.last);
+  }
+  return {sources_of(plan.joints, columns), steps, firsts};
+}
+
+Plan read_header(ByteView header, std::size_t columns) {
+  Record record(header);
+  Plan plan;
+  record.numbers(2);  // how far the clip was found to be off: for readers, not for decoding
+  record.integer(1);
+  plan.knot = static_cast<double>(record.integer(63) + 1) / 8;
+  plan.first = static_cast<double>(record.integer(63) + 1) / 64;
+  const std::int64_t base = record.signed_integer();
+  if (base < -kMostExponent || base > kMostExponent) fail("steps out of bounds");
+  RangeReading side(record.bytes());
+  record.end();
+  std::vector<std::int64_t> apart(columns);
+  plan.joints.of_column.resize(columns);
+  code_columns(side, apart, plan.joints);
+  if (!side.exhausted()) fail("what columns have of their own is cut off, too long, or cannot be");
+  std::int64_t exponent = base;
+  for (const std::int64_t each : apart) {
+    if (each < -kMostExponent || each > kMostExponent) fail("steps out of bounds");
+    exponent += 32 * each;
+    if (exponent < -kMostExponent || exponent > kMostExponent) fail("steps out of bounds");
+    plan.steps.push_back(step_of(static_cast<int>(exponent)));
+  }
+  return plan;
+}
+
+void decode(ByteView payload, double* values, std::size_t frames, const Plan& plan) {
+  Decoding(payload, values, frames, plan).run();
+}
+
+}  // namespace mocapress::near

@@ -1,0 +1,161 @@
+// Coding the numbers of a chunk, in both directions.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "coding/numbers.hpp"
+#include "near/blocks.hpp"
+#include "near/contexts.hpp"
+#include "near/model.hpp"
+
+namespace mocapress::near {
+
+// A number of 0 or more: its length in bits is modelled.
+class Count {
+ public:
+  template <class Side>
+  std::uint64_t code(Side& side, std::uint64_t value) {
+    const auto width = static_cast<unsigned>(std::bit_width(value + 1));
+    const auto length = static_cast<int>(lengths_.code(side, width));
+    if (length == 0) {
+      side.fail();
+      return 0;
+    }
+    return code_below_leading(side, length, value + 1) - 1;
+  }
+
+ private:
+  BitTree<6> lengths_;
+};
+
+// A channel while a chunk is coded.
+struct Channel {
+  std::size_t index;  // of its column
+  std::array<int, kSpectrum> usual{};
+  std::vector<Block> blocks;  // of this span
+  std::vector<std::int32_t> numbers, before_numbers;
+  Block before{};
+  bool follows = false;  // `before` is there
+  double last = 0;       // its value in the frame before the span
+
+  void begin_span(int length) {
+    if (!blocks.empty()) {
+      follows = true;
+      before_numbers.swap(numbers);
+      before = blocks.back();
+      before.numbers = before_numbers.data() + before.start;
+      blocks.clear();
+    }
+    numbers.assign(static_cast<std::size_t>(length), 0);
+  }
+};
+
+// Of the channels that move, all that was coded so far, and what was learned of it.
+class Coder {
+ public:
+  Coder() = default;
+
+  // What a block at `start` of channel `i` of the moving ones is coded beside, when this block of
+  // the span, if any, stands before it.
+  Around around(std::size_t i, const Block* before, int start, int length) const {
+    const Channel& own = channels[i];
+    Around found;
+    found.before = before != nullptr ? before : own.follows ? &own.before : nullptr;
+    for (std::size_t k = 0; k < 3 && k < i; ++k) {
+      found.beside[k] = at(channels[i - 1 - k], start + length / 2);
+    }
+    if (i > 0) {
+      found.at_start = at(channels[i - 1], start);
+      found.at_end = at(channels[i - 1], start + length - 1);
+    }
+    found.channel = static_cast<int>(own.index % kChannelContexts);
+    found.usual = &own.usual;
+    return found;
+  }
+
+  template <class Side>
+  bool split(Side& side, const Around& around, int length, bool is_split) {
+    return splits.code(side, split_context(around, length), 0, is_split);
+  }
+
+  // Codes a block of channel `i` and learns from it. Its numbers are those of the channel.
+  template <class Side>
+  void code(Side& side, std::size_t i, const Around& around, Block& block) {
+    const int n = block.length;
+    std::int32_t* const numbers = channels[i].numbers.data() + block.start;
+    Block wanted = block;
+    std::vector<std::int32_t> given;
+    if constexpr (!Side::kReading) given.assign(block.numbers, block.numbers + n);
+    const auto told = [&](int k) { return given.empty() ? 0 : given[static_cast<std::size_t>(k)]; };
+    block.numbers = numbers;
+    std::fill(numbers, numbers + n, 0);
+    number(side, knots, knot_context(around, n), around, block, 0, told(0));
+    block.of_class = code_class(side, class_context(around, n, numbers[0]), n, wanted.of_class);
+    const int end = end_of(block.of_class, n);
+    for (int k = 1; k <= end; ++k) {
+      number(side, sines, number_context(around, block, k), around, block, k, told(k));
+    }
+    remember(channels[i].usual, block);
+  }
+
+  std::vector<Channel> channels;
+
+  Model knots{
+      kMagnitudeDecisions, {120, 100, kChannelContexts * 10, 24, 100, 120, 144, 144}, 4, 10};
+  Model classes{kEnds.size() - 1, {100, 100, kChannelContexts * 10, 24, 100, 100, 120, 100}, 6, 10};
+  Model sines{
+      kMagnitudeDecisions, {120, 100, kChannelContexts * 10, 24, 160, 120, 144, 432}, 16, 60};
+  Model splits{1, {60, 36, kChannelContexts * 10, 24, 60, 40, 144, 216}, 6, 10};
+  Model signs{1, {90, 30, kChannelContexts * 9, 9, 27, 90, 81, kChannelContexts * 9}, 2, 10};
+
+ private:
+  static const Block* at(const Channel& channel, int frame) {
+    for (const Block& block : channel.blocks) {
+      if (frame < block.start + block.length) return &block;
+    }
+    return nullptr;
+  }
+
+  template <class Side>
+  void number(Side& side, Model& model, const Context& context, const Around& around, Block& block,
+              int k, std::int32_t value) {
+    const std::int64_t magnitude = code_magnitude(model, side, context, std::abs(value));
+    if (magnitude == 0) return;
+    const bool negative = signs.code(side, sign_context(around, block, k), 0, value < 0);
+    block.numbers[k] = static_cast<std::int32_t>(negative ? -magnitude : magnitude);
+  }
+
+  template <class Side>
+  int code_class(Side& side, const Context& context, int length, int value) {
+    const int most = classes_of(length) - 1;
+    for (int u = 0; u < most; ++u) {
+      if (!classes.code(side, context, static_cast<std::size_t>(u), value > u)) return u;
+    }
+    return most;
+  }
+
+  // Moves the usual magnitudes of the bands towards those of a block.
+  static void remember(std::array<int, kSpectrum>& usual, const Block& block) {
+    int band = fine_band(1, block.length), sum = 0, count = 0;
+    for (int k = 1; k <= block.length; ++k) {
+      const int next = k < block.length ? fine_band(k, block.length) : kSpectrum;
+      if (next != band) {
+        int rate = 0;
+        while (rate < 128 && (rate + 1) * (rate + 1) <= 838 * count) ++rate;
+        int& value = usual[static_cast<std::size_t>(band)];
+        value += ((256 * sum / count - value) * rate) >> 8;
+        band = next;
+        sum = count = 0;
+      }
+      if (k < block.length) {
+        sum += magnitude_at(&block, k);
+        ++count;
+      }
+    }
+  }
+};
+
+}  // namespace mocapress::near

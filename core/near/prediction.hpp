@@ -1,0 +1,56 @@
+// What of a channel the channels before it foretell, learned from what was decoded.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "near/blocks.hpp"
+
+namespace mocapress::near {
+
+// Of each of the columns that move, which of these before it foretell it: those of its joint, of
+// the four joints above, of the joints beside it and its parent, and of the first joint.
+std::vector<std::vector<std::size_t>> sources_of(const Joints& joints,
+                                                 const std::vector<std::size_t>& columns);
+
+// Predicts channel after channel of a span. What is foretold is how far a channel moves away from
+// its value in the frame before the span: a sum of how far the sources do, and their averages over
+// some frames.
+class Prediction {
+ public:
+  Prediction() = default;
+  // Of the channels that move: their sources, their steps, and where each begins.
+  Prediction(std::vector<std::vector<std::size_t>> sources, const std::vector<double>& steps,
+             const std::vector<double>& firsts);
+
+  void begin_span(int length);
+  // Of channel i in the frames of the span, when those before it are told.
+  void predict(std::size_t i, double* curve);
+  // The channel's values, and what of them was not foretold.
+  void tell(std::size_t i, const double* values, const double* rest);
+  // Learns from the whole groups of 64 frames among the first so many.
+  void end_span(std::size_t frames);
+
+ private:
+  static constexpr std::size_t kReach = 6;  // frames to both sides of an average
+  static constexpr std::size_t kGroup = 64;
+  static constexpr std::size_t kWaves = kGroup - 1;
+
+  struct Own {
+    std::vector<std::size_t> sources;
+    double step = 1, last = 0;
+    double past[kReach + 1] = {};  // its values before the span, the latest last
+    // Its values in the span; these and averages, less those of the frame before the span.
+    std::vector<double> values, rest, moved, averaged;
+    std::vector<double> products, targets;  // of the normal equations
+  };
+
+  void average(Own& own) const;
+  void learn(std::size_t i, const std::vector<double>& waves);
+
+  std::vector<Own> channels_;
+  std::size_t length_ = 0;
+  double seen_ = 0;  // observations, which fade
+};
+
+}  // namespace mocapress::near

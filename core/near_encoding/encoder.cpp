@@ -1,0 +1,368 @@
+#include "near_encoding/encoder.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "coding/sides.hpp"
+#include "near/codec.hpp"
+#include "near/coder.hpp"
+#include "near/marks.hpp"
+#include "near/prediction.hpp"
+#include "near_encoding/search.hpp"
+
+namespace mocapress::near {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+// Numbers beyond so many steps are kept as they are.
+constexpr double kMostSteps = 1e8;
+
+class Encoding {
+ public:
+  Encoding(const double* values, std::size_t frames, const Task& task, const Measure& measure)
+      : given_(values),
+        frames_(frames),
+        channels_(task.plan.steps.size()),
+        task_(task),
+        measure_(measure),
+        wanted_(values, values + frames * channels_),
+        raised_(frames * channels_, 1.0F),
+        moves_(channels_),
+        steps_(task.plan.steps) {
+    fill_gaps();
+    weigh();
+  }
+
+  Coded run() {
+    curves();
+    for (int round = 0; round < task_.rounds && raise(round); ++round) curves();
+    const auto corrections = correct();
+    const auto kept = keep();
+    Marks marks(side_, frames_, channels_);
+    marks.corrections(corrections, [](const Correction&) {});
+    marks.kept(kept, [](std::size_t, std::size_t, double) {});
+    Coded coded;
+    coded.payload = side_.finish();
+    coded.values.resize(frames_ * channels_);
+    decode(coded.payload, coded.values.data(), frames_, task_.plan);
+    const std::size_t points = measure_.points(channels_);
+    coded.errors.resize(frames_ * points);
+    drawn_ = coded.values;
+    for (const Kept& one : kept) {
+      for (std::size_t k = 0; k < one.bits.size(); ++k) {
+        const std::size_t at = (one.first + k) * channels_ + one.channel;
+        drawn_[at] = wanted_[at];
+      }
+    }
+    for (std::size_t f = 0; f < frames_; ++f) {
+      measure_.errors(&wanted_[f * channels_], &drawn_[f * channels_], channels_,
+                      &coded.errors[f * points]);
+    }
+    return coded;
+  }
+
+ private:
+  // Puts a number for the curves wherever there is none, or none that they could reach.
+  void fill_gaps() {
+    for (std::size_t c = 0; c < channels_; ++c) {
+      const auto usable = [&](double value) { return std::fabs(value) <= kMostSteps * steps_[c]; };
+      double last = 0;
+      for (std::size_t f = frames_; f-- > 0;) {
+        if (usable(wanted_[f * channels_ + c])) last = wanted_[f * channels_ + c];
+      }
+      const double start = last;
+      for (std::size_t f = 0; f < frames_; ++f) {
+        double& value = wanted_[f * channels_ + c];
+        if (!usable(value)) value = last;
+        last = value;
+        moves_[c] = moves_[c] || value != start;
+      }
+    }
+  }
+
+  void weigh() {
+    Leverage leverage(measure_, channels_, task_.weights, moves_);
+    costs_.resize(frames_ * channels_);
+    shares_.resize(frames_ * leverage.pairs());
+    for (std::size_t f = 0; f < frames_; ++f) {
+      leverage.of_frame(&wanted_[f * channels_], &costs_[f * channels_],
+                        shares_.data() + f * leverage.pairs());
+    }
+    pairs_ = leverage.pairs();
+    for (std::size_t c = 0; c < channels_; ++c) {
+      const auto before = leverage.before(c);
+      before_.emplace_back(before.begin(), before.end());
+      begins_.push_back(leverage.begin_of(c));
+    }
+  }
+
+  // Codes the curves of all channels; `drawn_` is what they give.
+  void curves() {
+    side_ = RangeWriting();
+    coder_ = Coder();
+    drawn_.assign(frames_ * channels_, 0.0);
+    begin();
+    int length = 0;
+    for (std::size_t first = 0; first < frames_; first += static_cast<std::size_t>(length)) {
+      length = span_of(first, frames_ - first);
+      const std::size_t count =
+          std::min<std::size_t>(static_cast<std::size_t>(length), frames_ - first);
+      prediction_.begin_span(length);
+      for (std::size_t i = 0; i < coder_.channels.size(); ++i) span(i, first, length, count);
+      if (first + count < frames_) prediction_.end_span(count);
+    }
+    // What is kept anyway has no error that others may make good.
+    for (std::size_t i = 0; i < drawn_.size(); ++i) {
+      if (is_replaced(i)) drawn_[i] = wanted_[i];
+    }
+  }
+
+  // Whether the curves have another number in place of what was given.
+  bool is_replaced(std::size_t i) const {
+    return std::bit_cast<std::uint64_t>(given_[i]) != std::bit_cast<std::uint64_t>(wanted_[i]);
+  }
+
+  void begin() {
+    Bit moves[2];
+    Difference<6> firsts;
+    bool moved = true;
+    for (std::size_t c = 0; c < channels_; ++c) {
+      moved = side_.bit(moves[moved ? 1 : 0], moves_[c]);
+      const double unit = steps_[c] * (moved ? task_.plan.knot : 0.25);
+      const auto number = std::llround(wanted_[c] / unit);
+      firsts.code(side_, number);
+      const double value = static_cast<double>(number) * unit;
+      if (moved) {
+        Channel& channel = coder_.channels.emplace_back();
+        channel.index = c;
+        channel.last = value;
+      } else {
+        for (std::size_t f = 0; f < frames_; ++f) drawn_[f * channels_ + c] = value;
+      }
+    }
+    prediction_ = prediction_of(coder_, task_.plan);
+  }
+
+  void span(std::size_t i, std::size_t first, int length, std::size_t count) {
+    Channel& channel = coder_.channels[i];
+    channel.begin_span(length);
+    const std::size_t c = channel.index;
+    const auto n = static_cast<std::size_t>(length);
+    std::array<double, kLongest> predicted, values, costs;
+    prediction_.predict(i, predicted.data());
+    for (std::size_t f = 0; f < n; ++f) {
+      if (f >= count) {
+        values[f] = values[f - 1];
+        costs[f] = 0;
+        continue;
+      }
+      const std::size_t at = (first + f) * channels_;
+      const float* share = shares_.data() + (first + f) * pairs_ + begins_[c];
+      double value = wanted_[at + c];
+      for (const std::size_t other : before_[c]) {
+        value -= *share++ * (drawn_[at + other] - wanted_[at + other]);
+      }
+      values[f] = value - predicted[f];
+      costs[f] = costs_[at + c] * raised_[at + c];
+    }
+    const double bit_cost = task_.rate * task_.scale * task_.scale;
+    const Target target{values.data(), costs.data(), steps_[c], bit_cost};
+    const Cut cut = search(coder_, i, task_.plan, target, nullptr, 0, length, channel.last);
+    std::size_t next = 0;
+    write(i, cut, next, 0, length);
+    for (std::size_t f = 0; f < n; ++f) values[f] = cut.curve[f] + predicted[f];
+    prediction_.tell(i, values.data(), cut.curve.data());
+    for (std::size_t f = 0; f < count; ++f) drawn_[(first + f) * channels_ + c] = values[f];
+    channel.last = values[n - 1];
+  }
+
+  void write(std::size_t i, const Cut& cut, std::size_t& next, int start, int length) {
+    Channel& channel = coder_.channels[i];
+    const Block* const before = channel.blocks.empty() ? nullptr : &channel.blocks.back();
+    const Around around = coder_.around(i, before, start, length);
+    const bool is_split = cut.pieces[next].block.length < length;
+    if (length > kShortest && coder_.split(side_, around, length, is_split)) {
+      write(i, cut, next, start, length / 2);
+      write(i, cut, next, start + length / 2, length / 2);
+      return;
+    }
+    Block block = cut.pieces[next++].block;
+    coder_.code(side_, i, around, block);
+    channel.blocks.push_back(block);
+  }
+
+  // The largest error of a point, without a rig of a value.
+  double bound_of(std::size_t point) const {
+    if (measure_.rig) return task_.most;
+    return std::min(task_.most, task_.value_most[point] * measure_.others[point]);
+  }
+
+  bool within(const double* errors) const {
+    const std::size_t count = measure_.points(channels_);
+    for (std::size_t p = 0; p < count; ++p) {
+      if (!(errors[p] <= bound_of(p))) return false;
+    }
+    return true;
+  }
+
+  // By how much each point of each frame is beyond its bound, as a ratio; whether any is.
+  template <class Each>
+  bool beyond(Each&& each) const {
+    std::vector<double> errors(measure_.points(channels_));
+    bool any = false;
+    for (std::size_t f = 0; f < frames_; ++f) {
+      measure_.errors(&wanted_[f * channels_], &drawn_[f * channels_], channels_, errors.data());
+      for (std::size_t p = 0; p < errors.size(); ++p) {
+        const double most = bound_of(p);
+        if (errors[p] <= most) continue;
+        any = true;
+        each(f, p, errors[p] / most);
+      }
+    }
+    return any;
+  }
+
+  // Makes errors costlier in channels that move what is beyond its bound, around its frame.
+  bool raise(int round) {
+    std::vector<float> times(raised_.size(), 1.0F);
+    const bool any = beyond([&](std::size_t frame, std::size_t point, double ratio) {
+      const auto by = static_cast<float>(std::min(4.0, 1.6 * ratio * ratio));
+      for (const std::size_t c : movers(point, round < 2 ? 3 : channels_)) {
+        for (std::size_t f = frame - std::min<std::size_t>(frame, 3);
+             f < std::min(frame + 4, frames_); ++f) {
+          float& own = times[f * channels_ + c];
+          own = std::max(own, by);
+        }
+      }
+    });
+    for (std::size_t i = 0; i < times.size(); ++i)
+      raised_[i] = std::min(raised_[i] * times[i], 3e4F);
+    return any;
+  }
+
+  // The channels that move a point, those of the nearest joints.
+  std::vector<std::size_t> movers(std::size_t point, std::size_t joints) const {
+    if (!measure_.rig) return {point};
+    const Rig& rig = *measure_.rig;
+    if (by_joint_.empty()) {
+      by_joint_.resize(rig.joints());
+      for (const auto& action : rig.actions()) by_joint_[action.joint].push_back(action.column);
+    }
+    std::vector<std::size_t> found;
+    for (auto j = static_cast<std::int32_t>(point); j >= 0 && joints > 0;
+         j = rig.parent(static_cast<std::size_t>(j))) {
+      const auto& own = by_joint_[static_cast<std::size_t>(j)];
+      found.insert(found.end(), own.begin(), own.end());
+      if (!own.empty()) --joints;
+    }
+    return found;
+  }
+
+  // Of each frame that is beyond a bound, corrections that bring it back.
+  std::vector<Correction> correct() {
+    std::vector<std::vector<std::size_t>> points(frames_);
+    beyond([&](std::size_t frame, std::size_t point, double) { points[frame].push_back(point); });
+    std::vector<Correction> corrections;
+    for (std::size_t f = 0; f < frames_; ++f) {
+      if (points[f].empty()) continue;
+      std::vector<std::size_t> near;
+      for (const std::size_t point : points[f]) {
+        for (const std::size_t c : movers(point, channels_)) near.push_back(c);
+      }
+      std::sort(near.begin(), near.end());
+      near.erase(std::unique(near.begin(), near.end()), near.end());
+      std::vector<std::size_t> all(channels_);
+      std::iota(all.begin(), all.end(), std::size_t{0});
+      Correction best{f, 0, {}};
+      double least = kInfinite;
+      for (const auto& candidates : {near, all}) {
+        for (int fineness = 0; fineness < 16; ++fineness) {
+          Correction one{f, fineness, {}};
+          if (!moved_back(one, candidates)) continue;
+          double bits = 0;
+          for (const auto& [c, times] : one.added) bits += 4 + 2 * std::log2(std::abs(times));
+          if (bits < least) {
+            least = bits;
+            best = one;
+          }
+          break;
+        }
+      }
+      if (best.added.empty()) continue;
+      for (const auto& [c, times] : best.added) {
+        drawn_[f * channels_ + c] += times * part_of(steps_[c], best.fineness);
+      }
+      corrections.push_back(std::move(best));
+    }
+    return corrections;
+  }
+
+  // Whether these channels, moved to the nearest part of a step, bring a frame within its bound.
+  bool moved_back(Correction& one, const std::vector<std::size_t>& candidates) const {
+    const double* const wanted = &wanted_[one.frame * channels_];
+    std::vector<double> row(&drawn_[one.frame * channels_],
+                            &drawn_[one.frame * channels_] + channels_);
+    for (const std::size_t c : candidates) {
+      const double part = part_of(steps_[c], one.fineness);
+      const double times = std::round((wanted[c] - row[c]) / part);
+      if (times == 0 || std::fabs(times) > 1e9) continue;
+      row[c] += static_cast<std::int32_t>(times) * part;
+      one.added.emplace_back(c, static_cast<std::int32_t>(times));
+    }
+    if (one.added.empty()) return false;
+    std::vector<double> errors(measure_.points(channels_));
+    measure_.errors(wanted, row.data(), channels_, errors.data());
+    return within(errors.data());
+  }
+
+  // What is no number, and what is still beyond a bound.
+  std::vector<Kept> keep() {
+    std::vector<char> keeps(frames_ * channels_, 0);
+    for (std::size_t i = 0; i < keeps.size(); ++i) {
+      const double error = std::fabs(given_[i] - drawn_[i]);
+      keeps[i] = is_replaced(i) || !(error <= task_.value_most[i % channels_]);
+    }
+    beyond([&](std::size_t frame, std::size_t, double) {
+      std::fill_n(&keeps[frame * channels_], channels_, 1);
+    });
+    std::vector<Kept> kept;
+    for (std::size_t c = 0; c < channels_; ++c) {
+      for (std::size_t f = 0; f < frames_; ++f) {
+        if (keeps[f * channels_ + c] == 0) continue;
+        const bool next = f > 0 && keeps[(f - 1) * channels_ + c] != 0;
+        if (!next) kept.push_back({c, f, {}});
+        kept.back().bits.push_back(std::bit_cast<std::uint64_t>(given_[f * channels_ + c]));
+      }
+    }
+    return kept;
+  }
+
+  const double* given_;
+  std::size_t frames_, channels_;
+  const Task& task_;
+  const Measure& measure_;
+  std::vector<double> wanted_;  // what the curves are to be
+  std::vector<float> raised_;   // how much more errors cost
+  std::vector<bool> moves_;
+  const std::vector<double>& steps_;
+  std::vector<double> costs_;
+  std::vector<float> shares_;
+  std::size_t pairs_ = 0;
+  std::vector<std::vector<std::size_t>> before_;
+  std::vector<std::size_t> begins_;
+  RangeWriting side_;
+  Coder coder_;
+  Prediction prediction_;
+  std::vector<double> drawn_;
+  mutable std::vector<std::vector<std::size_t>> by_joint_;
+};
+
+}  // namespace
+
+Coded encode(const double* values, std::size_t frames, const Task& task, const Measure& measure) {
+  return Encoding(values, frames, task, measure).run();
+}
+
+}  // namespace mocapress::near

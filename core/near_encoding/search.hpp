@@ -1,0 +1,35 @@
+// Choosing the blocks of a channel in a span: how they are cut, and their numbers.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "near/coder.hpp"
+
+namespace mocapress::near {
+
+// What a channel is to be in a span: of every frame a target, and what the square of an error
+// costs.
+struct Target {
+  const double* values;
+  const double* costs;
+  double step;
+  double bit_cost;
+};
+
+struct Piece {
+  Block block;
+  std::vector<std::int32_t> numbers;
+};
+
+struct Cut {
+  double cost = 0;
+  std::vector<Piece> pieces;
+  std::vector<double> curve;
+};
+
+// The cheapest cut found of frames `start` on, where the channel comes from `last`.
+Cut search(const Coder& coder, std::size_t i, const Plan& plan, const Target& target,
+           const Block* before, int start, int length, double last);
+
+}  // namespace mocapress::near

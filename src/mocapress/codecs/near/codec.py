@@ -1,0 +1,150 @@
+"""The codec ``near``."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress import _core
+from mocapress.codecs.contract import (
+    NO_OTHERS,
+    Bound,
+    Capabilities,
+    Chunk,
+    Codec,
+    Encoded,
+    Model,
+    Others,
+)
+from mocapress.codecs.near.encoding import Encoder
+from mocapress.codecs.near.goal import Goal, amount, goal_of
+from mocapress.codecs.near.header import unpack_errors
+from mocapress.errors import CorruptError, ParameterError
+from mocapress.motion import Clip, Column, Skeleton, Stream
+
+_MOST_FRAMES = 1 << 20
+_QUALITIES = range(1, 10)
+
+
+@dataclass(frozen=True, slots=True)
+class Near(Codec):
+    """Lossy motion of a skeleton at a guaranteed error of its joints.
+
+    The error of a joint is the largest of three points, 3 cm along its axes. ``max`` keeps every
+    error of every joint and frame, ``mean`` their mean, ``p`` both as ACL does at that precision.
+    Amounts have a unit, ``0.1cm``; without one they are in units of the file. Clips without a
+    skeleton keep the errors of their values, in degrees.
+    """
+
+    id: ClassVar[str] = "near"
+    can: ClassVar[Capabilities] = Capabilities(
+        lossless=False, bounds=frozenset({Bound.LARGEST}), measured=True
+    )
+
+    max: str = ""
+    """Largest error of any joint in any frame: ``0.1cm``, ``0.5mm``, ``0.2deg``."""
+    mean: str = ""
+    """Mean error over joints and frames, reached to 2 %."""
+    p: str = ""
+    """ACL's precision: a mean of a third, a largest error of at most 1.6 times it."""
+    quality: int = 5
+    """Where nothing else is asked for: 1 (1 cm of a figure 1.7 m high) to 9 (0.01 cm)."""
+    max_error: float = inf
+    """Largest error of any value, in the unit of its channel; instead of all others."""
+    chunk: int = 1024
+    """Frames that are decoded together."""
+
+    def __post_init__(self) -> None:
+        for name in ("max", "mean", "p"):
+            if getattr(self, name):
+                amount(getattr(self, name), f"near:{name}")
+        if self.p and (self.max or self.mean):
+            raise ParameterError("near:p", expected="neither max nor mean beside it")
+        if not isinstance(self.quality, int) or self.quality not in _QUALITIES:
+            raise ParameterError("near:quality", expected="1 to 9", found=repr(self.quality))
+        if not self.max_error >= 0:
+            raise ParameterError("near:max_error", expected="0 or more", found=repr(self.max_error))
+        if not isinstance(self.chunk, int) or not 1 <= self.chunk <= _MOST_FRAMES:
+            raise ParameterError(
+                "near:chunk", expected=f"1 to {_MOST_FRAMES}", found=repr(self.chunk)
+            )
+
+    def goal(self, skeleton: Skeleton | None, columns: Sequence[Column]) -> Goal:
+        """Give what is asked of clips with this skeleton and these columns."""
+        if self.max_error < inf:
+            return Goal(False, max(self.max_error / 3, 1e-9), inf)
+        most, mean, precision = (
+            amount(text, "near") if text else None for text in (self.max, self.mean, self.p)
+        )
+        return goal_of(
+            skeleton, columns, most=most, mean=mean, precision=precision, quality=self.quality
+        )
+
+    def encode(
+        self,
+        stream: Stream,
+        *,
+        skeleton: Skeleton | None = None,
+        model: Model | None = None,
+        others: Others = NO_OTHERS,
+    ) -> Encoded:
+        """Code a stream; ``(F, C)`` values, any float64; NaN and infinities stay as they are.
+
+        Raises
+        ------
+        ParameterError
+            When a length is asked for, and nothing says how long the units of the file are.
+        VerificationError
+            When what was decoded breaks a bound.
+
+        """
+        goal = self.goal(skeleton, stream.columns)
+        return Encoder(goal, self.max_error, self.chunk, stream, skeleton).encode()
+
+    def decode(
+        self,
+        header: bytes,
+        chunks: Sequence[Chunk],
+        columns: Sequence[Column],
+        *,
+        model: Model | None = None,
+        others: Others = NO_OTHERS,
+        stop: int | None = None,
+    ) -> NDArray[np.float64]:
+        """Decode any chunks, one after the other: (sum of their frames, C) float64.
+
+        Raises
+        ------
+        CorruptError
+            When header or payload are not what ``encode`` makes with these parameters.
+
+        """
+        for chunk in chunks:
+            if not 0 < chunk.frames <= self.chunk:
+                raise CorruptError(
+                    f"chunk of near from frame {chunk.first} has an impossible number of frames",
+                    expected=f"1 to {self.chunk}",
+                    found=str(chunk.frames),
+                )
+        values = np.empty((sum(chunk.frames for chunk in chunks), len(columns)))
+        row = 0
+        for chunk in chunks:
+            try:
+                _core.near_decode(header, chunk.payload, values[row : row + chunk.frames])
+            except ValueError as error:
+                raise CorruptError(f"chunk of near from frame {chunk.first}: {error}") from error
+            row += chunk.frames
+        return values[:stop]
+
+    def largest_errors(self, columns: Sequence[Column]) -> list[float]:
+        """Give the error up to which each column may come back; infinite where none was asked."""
+        return [self.max_error] * len(columns)
+
+    def measure(self, clip: Clip, encoded: Encoded, raw_bytes: int) -> dict[str, float]:
+        """Give the errors that the encoder found: of joints, in units of length, or of values."""
+        in_space, mean, largest = unpack_errors(encoded.header)
+        of = "joint" if in_space else "value"
+        return {f"mean_{of}_error": mean, f"largest_{of}_error": largest}

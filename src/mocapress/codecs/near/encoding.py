@@ -1,0 +1,139 @@
+"""The encoder of ``near``: from a goal to steps and chunks."""
+
+from math import inf, log, log2
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress import _core
+from mocapress.codecs.contract import Chunk, Encoded
+from mocapress.codecs.near.goal import Goal, Measure
+from mocapress.codecs.near.header import COARSE, STEPS_PER_OCTAVE, joints_of, pack_header
+from mocapress.errors import VerificationError
+from mocapress.motion import Skeleton, Stream
+
+_MOST_STEP = 4096
+_SCALE_OF_MEAN = 2.5
+"""Where the search for a mean begins; 5.5 at coarse ones."""
+_TRIES = 5
+_NEAR_ENOUGH = 0.01
+_SAMPLE = 256
+"""Frames by which channels are weighed."""
+_RATE = 0.12
+"""What a bit is worth, in squares of the scale."""
+
+
+class Encoder:
+    """Codes a stream."""
+
+    def __init__(
+        self,
+        goal: Goal,
+        max_error: float,
+        chunk: int,
+        stream: Stream,
+        skeleton: Skeleton | None,
+    ) -> None:
+        self.goal, self.chunk = goal, chunk
+        self.values = np.ascontiguousarray(stream.values, dtype=np.float64)
+        self.measure = Measure(goal, skeleton, stream.columns)
+        self.value_most = np.full(stream.channels, max_error)
+        self.weights = np.ones(self.measure.points)
+        self.exponents = self._levers()
+        self.joints = joints_of(stream.columns, skeleton)
+
+    def encode(self) -> Encoded:
+        """Give header and chunks; every bound was checked on what they decode to."""
+        frames, channels = self.values.shape
+        if not frames or not channels:
+            return Encoded(self._header(1.0, (0.0, 0.0)), self._empty())
+        scale = self._scale()
+        payloads, errors = self._chunks(scale, self.goal.most)
+        largest = float(errors.max(initial=0.0))
+        if largest > self.goal.most:
+            raise VerificationError(
+                "codec near breaks its bound; please report this",
+                expected=f"errors up to {self.goal.most:g}",
+                found=f"{largest:g}",
+            )
+        header = self._header(scale, (float(errors.mean()), largest))
+        return Encoded(header, tuple(payloads))
+
+    def _empty(self) -> tuple[Chunk, ...]:
+        """Chunks of frames without channels."""
+        return tuple(
+            Chunk(
+                first, min(self.chunk, len(self.values) - first), self._payload(first, 1.0, inf)[0]
+            )
+            for first in range(0, len(self.values), self.chunk)
+        )
+
+    def _levers(self) -> NDArray[np.int64]:
+        """Give what each channel's step is coarser than the scale, (C,) in 64ths of an octave."""
+        frames = self.values[:: max(1, len(self.values) // _SAMPLE)]
+        moderate = np.where(np.abs(frames) < 1e9, frames, 0.0)
+        squares = _core.near_levers(self.measure.core, moderate, self.weights)
+        with np.errstate(divide="ignore"):
+            levers = 0.5 * np.log2(squares)
+        # A channel that moves nothing has the step of one that moves a little.
+        known = np.isfinite(levers) & (squares > 1e-8)
+        levers[~known] = levers[known].min(initial=0.0)
+        exponents: NDArray[np.int64] = np.rint(-levers * STEPS_PER_OCTAVE / COARSE).astype(np.int64)
+        return exponents * COARSE
+
+    def _steps(self, scale: float) -> list[int]:
+        base = round(log2(scale) * STEPS_PER_OCTAVE)
+        low = -_MOST_STEP + (base + _MOST_STEP) % COARSE
+        high = _MOST_STEP - (_MOST_STEP - base) % COARSE
+        return [int(each) for each in np.clip(base + self.exponents, low, high)]
+
+    def _knot(self, scale: float) -> tuple[int, int]:
+        """Give the step of knots, in eighths, and what a coefficient of 1 stands for, in 64ths."""
+        relative = scale / self.goal.size
+        return 6 if relative < 2e-4 else 4, 64 if relative < 4e-4 else 61
+
+    def _header(self, scale: float, errors: tuple[float, float]) -> bytes:
+        knot, one = self._knot(scale)
+        steps = self._steps(scale)
+        return pack_header(self.goal.in_space, errors, knot, one, steps, self.joints)
+
+    def _payload(self, first: int, scale: float, most: float) -> tuple[bytes, NDArray[np.float64]]:
+        payload, _, errors = _core.near_encode(
+            self.measure.core,
+            self.values[first : first + self.chunk],
+            self._header(scale, (0.0, 0.0)),
+            scale,
+            _RATE,
+            self.weights,
+            most,
+            self.value_most,
+            3,
+        )
+        return payload, errors
+
+    def _chunks(self, scale: float, most: float) -> tuple[list[Chunk], NDArray[np.float64]]:
+        chunks, errors = [], []
+        for first in range(0, len(self.values), self.chunk):
+            payload, found = self._payload(first, scale, most)
+            chunks.append(Chunk(first, len(found), payload))
+            errors.append(found)
+        return chunks, np.concatenate(errors)
+
+    def _scale(self) -> float:
+        """Find the scale at which the mean error is the goal's."""
+        scale, tried = self.goal.mean * _SCALE_OF_MEAN, list[tuple[float, float]]()
+        for _ in range(_TRIES):
+            mean = float(self._chunks(scale, inf)[1].mean())
+            if mean <= 0:
+                return scale
+            off = log(mean / self.goal.mean)
+            tried.append((log(scale), off))
+            if abs(off) < _NEAR_ENOUGH:
+                break
+            slope = 1.0
+            if len(tried) > 1 and tried[-2][1] != off:
+                slope = (tried[-1][0] - tried[-2][0]) / (off - tried[-2][1])
+            move = -off * min(max(slope, 0.4), 2.5)
+            scale *= float(np.exp(min(max(move, -2.0), 2.0)))
+        best = min(tried, key=lambda one: abs(one[1]))
+        return float(np.exp(best[0]))

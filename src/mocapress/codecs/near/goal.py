@@ -1,0 +1,145 @@
+"""What was asked of the errors, in the units of a clip."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf, isfinite, radians
+
+import numpy as np
+
+from mocapress import _core
+from mocapress.errors import ParameterError
+from mocapress.motion import Column, Skeleton
+from mocapress.motion.units import centimetres_per_unit, figure_size
+
+_LENGTHS = {"m": 100.0, "cm": 1.0, "mm": 0.1, "in": 2.54}
+_ANGLES = {"deg": 1.0, "rad": 180 / np.pi}
+_AMOUNT = re.compile(r"(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+(?:[eE][-+]?\d+)?)\s*([a-z]*)")
+
+RADIUS = 3.0
+"""Centimetres along the joints' axes at which errors are measured, as ACL does."""
+_HEIGHT = 170.0
+"""Centimetres of a figure of which nothing is known."""
+MEAN_OF_PRECISION = 1 / 3
+MEAN_OF_MOST = 0.3
+"""What mean error goes with a largest one, where none is asked for."""
+MOST_OF_PRECISION = 1.6
+"""ACL's own largest error at a precision, at most times this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Amount:
+    """A number with its unit, as it was written; ``unit`` may be empty."""
+
+    number: float
+    unit: str
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether it is an angle."""
+        return self.unit in _ANGLES
+
+
+def amount(text: str, where: str) -> Amount:
+    """Read ``0.1cm``, ``0.05deg`` or ``0.02`` (units of the file).
+
+    Raises
+    ------
+    ParameterError
+        When it is no such amount above 0.
+
+    """
+    found = _AMOUNT.fullmatch(text.strip())
+    units = {"", *_LENGTHS, *_ANGLES}
+    if found and found[2] in units and 0 < float(found[1]) < inf:
+        return Amount(float(found[1]), found[2])
+    raise ParameterError(where, expected="an amount above 0, such as 0.1cm", found=repr(text))
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """What errors are measured and kept, in units of the file.
+
+    ``in_space``: errors of joints, by three points at ``radius`` along their axes; otherwise of the
+    values, in degrees and units of length.
+    """
+
+    in_space: bool
+    mean: float
+    most: float = inf
+    radius: float = 0.0
+    size: float = 1.0
+    """Of the figure; 1 where errors are not in space."""
+
+
+def goal_of(
+    skeleton: Skeleton | None,
+    columns: Sequence[Column],
+    *,
+    most: Amount | None,
+    mean: Amount | None,
+    precision: Amount | None,
+    quality: int,
+) -> Goal:
+    """Give the goal for clips of a skeleton.
+
+    Raises
+    ------
+    ParameterError
+        When a length is asked for, and nothing says how long the units of the file are.
+
+    """
+    asked = [each for each in (most, mean, precision) if each is not None]
+    size = figure_size(skeleton) if skeleton and skeleton.joints else 0.0
+    stretched = any(column.kind == "l" for column in columns)  # has no kinematics here
+    in_space = isfinite(size) and size > 0 and not stretched
+    in_space = in_space and not any(each.is_angle for each in asked)
+    if not in_space:
+        size = 1.0
+    unit = centimetres_per_unit(skeleton) if skeleton and in_space else None
+    radius = RADIUS / unit if unit else RADIUS / _HEIGHT * size
+
+    def own(each: Amount) -> float:
+        if not each.unit:
+            return each.number
+        if each.is_angle:
+            return each.number * _ANGLES[each.unit]
+        if unit is None:
+            what = "a length" if in_space else "a length, for a clip without a skeleton,"
+            raise ParameterError(
+                f"near: {what} cannot be kept: the units of the file are not known",
+                expected="quality=1 to 9" if in_space else "degrees, such as max=0.1deg",
+                found=f"{each.number:g}{each.unit}",
+            )
+        return each.number * _LENGTHS[each.unit] / unit
+
+    if not asked:
+        # From 1 cm at 1 to 0.01 cm at 9, of a figure 1.7 m high; without one, degrees.
+        fine = 10.0 ** ((1 - quality) / 4)
+        precision = Amount(fine / _HEIGHT * size if in_space else fine, "")
+    largest = own(most) if most else own(precision) * MOST_OF_PRECISION if precision else inf
+    if mean:
+        middle = own(mean)
+    elif precision:
+        middle = own(precision) * MEAN_OF_PRECISION
+    else:
+        middle = largest * MEAN_OF_MOST
+    return Goal(in_space, middle, largest, radius, size)
+
+
+class Measure:
+    """Errors of frames under a goal."""
+
+    def __init__(self, goal: Goal, skeleton: Skeleton | None, columns: Sequence[Column]) -> None:
+        self.goal = goal
+        self.uses_radians = any(column.unit == "rad" for column in columns)
+        if goal.in_space:
+            others = [goal.size] * len(columns)
+        else:
+            one = 1 / radians(1)
+            others = [one if column.unit == "rad" else 1.0 for column in columns]
+        named = [(column.joint, column.kind) for column in columns]
+        self.core = _core.near_measure(
+            skeleton if goal.in_space else None, named, self.uses_radians, goal.radius, others
+        )
+        self.points = len(skeleton.joints) if goal.in_space and skeleton else len(columns)

@@ -1,0 +1,102 @@
+"""The codec header of ``near``: docs/format/near.md."""
+
+from collections.abc import Sequence
+from math import ceil, floor, log10
+from typing import NamedTuple
+
+import numpy as np
+
+from mocapress import _core
+from mocapress.motion import Column, Skeleton
+from mocapress.records import Reader, Writer
+
+STEPS_PER_OCTAVE = 64
+COARSE = 32
+"""Steps of channels lie so many 64ths of an octave apart."""
+
+
+class Joints(NamedTuple):
+    """The joint of each column, and the parent of each joint, -1 for none.
+
+    Joints are counted as columns tell them; one without columns is left out.
+    """
+
+    of_column: list[int]
+    parents: list[int]
+
+
+def joints_of(columns: Sequence[Column], skeleton: Skeleton | None) -> Joints:
+    """Count the joints of columns."""
+    joints = Joints([], [])
+    known: dict[int, int] = {}
+    before: int | None = None
+    for column in columns:
+        if column.joint < 0 or column.joint != before:
+            joint, parent = column.joint, -1
+            while skeleton is not None and 0 <= joint < len(skeleton.joints) and parent < 0:
+                joint = skeleton.joints[joint].parent
+                parent = known.get(joint, -1)
+            known[column.joint] = len(joints.parents)
+            joints.parents.append(parent)
+        joints.of_column.append(len(joints.parents) - 1)
+        before = column.joint
+    return joints
+
+
+def pack_header(
+    in_space: bool,
+    errors: tuple[float, float],
+    knot: int,
+    first: int,
+    steps: Sequence[int],
+    joints: Joints,
+) -> bytes:
+    """Make the header.
+
+    Parameters
+    ----------
+    in_space
+        Whether errors are those of joints.
+    errors
+        Mean and largest; they are rounded up to three digits.
+    knot, first
+        The step of knots in eighths, and what a coefficient of 1 stands for in 64ths.
+    steps
+        Of each channel, as an exponent of 2^(1/64); they differ by multiples of 32.
+    joints
+        Of the channels.
+
+    """
+    writer = Writer()
+    writer.numbers([_rounded_up(error) for error in errors])
+    writer.integer(1 if in_space else 0)
+    writer.integer(knot - 1)
+    writer.integer(first - 1)
+    base = steps[0] if steps else 0
+    writer.signed(base)
+    apart = np.diff(np.array(steps, np.int64), prepend=base) // COARSE
+    writer.bytes(_core.near_columns(apart.tolist(), joints.of_column, joints.parents))
+    return bytes(writer.data)
+
+
+def unpack_errors(header: bytes) -> tuple[bool, float, float]:
+    """Give whether errors are those of joints, and their mean and largest.
+
+    Raises
+    ------
+    CorruptError
+        When the header does not begin with them.
+
+    """
+    reader = Reader(header, "header of near")
+    mean, largest = reader.numbers(2)
+    return reader.integer(1) == 1, mean, largest
+
+
+def _rounded_up(error: float) -> float:
+    if not 0 < error < 1e15:
+        return float(error)
+    digits = 2 - floor(log10(error))
+    if digits > 15:
+        return float(error)
+    return ceil(error * 10**digits) / 10**digits if digits > 0 else float(ceil(error))

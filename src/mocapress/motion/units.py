@@ -1,0 +1,51 @@
+"""How long the units of a skeleton are."""
+
+import numpy as np
+
+from mocapress.motion.skeleton import Skeleton
+
+CENTIMETRES_PER_INCH = 2.54
+CMU = CENTIMETRES_PER_INCH / 0.45
+"""Centimetres in a unit of the CMU database, also where a file does not say so."""
+
+_UNITS = (("m", 100.0), ("cm", 1.0), ("mm", 0.1), ("inches", CENTIMETRES_PER_INCH))
+
+
+def figure_size(skeleton: Skeleton) -> float:
+    """Give the largest extent of the figure at rest along an axis, in units of its lengths."""
+    places: list[np.ndarray] = []
+    for joint in skeleton.joints:
+        start = places[joint.parent] if joint.parent >= 0 else np.zeros(3)
+        places.append(start + (np.array(joint.offset) if joint.parent >= 0 else 0))
+    ends = [
+        places[i] + np.array(end) for i, joint in enumerate(skeleton.joints) for end in joint.ends
+    ]
+    return float(np.ptp(np.stack(places + ends), axis=0).max())
+
+
+def suggest_unit(skeleton: Skeleton) -> str | None:
+    """Say what unit the lengths of bones suggest, from the size of the figure at rest."""
+    if skeleton.length_unit not in (None, 1.0):
+        unit = CENTIMETRES_PER_INCH / skeleton.length_unit
+        return f"1 unit is {unit:.4g} cm, as the ASF's length says"
+    size = figure_size(skeleton)
+    for name, centimetres in _UNITS:
+        if _is_figure(size * centimetres):
+            return f"{name} (the figure measures {size:.4g})"
+    if _is_figure(size * CMU):
+        return f"CMU's, 5.644 cm (the figure measures {size:.4g})"
+    return None
+
+
+def centimetres_per_unit(skeleton: Skeleton) -> float | None:
+    """Give the unit of lengths in centimetres, said or suggested; None where neither is."""
+    if skeleton.length_unit not in (None, 1.0, 0.0):
+        return CENTIMETRES_PER_INCH / skeleton.length_unit
+    size = figure_size(skeleton)
+    found = (unit for _, unit in (*_UNITS, ("", CMU)) if _is_figure(size * unit))
+    return next(found, None)
+
+
+def _is_figure(centimetres: float) -> bool:
+    # At rest it is some 1.7 m high, or as wide with its arms out.
+    return 130 <= centimetres <= 230

@@ -1,0 +1,245 @@
+"""What ``near`` promises: errors of joints within what was asked, whatever the clip."""
+
+from dataclasses import replace
+from math import inf
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import mocapress as mp
+from mocapress.codecs import Codec
+from mocapress.codecs.near.goal import amount, goal_of
+from mocapress.errors import ParameterError
+from mocapress.motion import Clip, Column, Joint, Skeleton
+from mocapress.motion.kinematics import positions, rotations
+
+Values = NDArray[np.float64]
+CMU = 2.54 / 0.45
+
+
+def decoded_by(codec: Codec, clip: Clip) -> Clip:
+    encoded = codec.encode(clip.main, skeleton=clip.skeleton)
+    return clip.with_values(codec.decode(encoded.header, encoded.chunks, clip.columns))
+
+
+def joint_errors(clip: Clip, other: Clip, radius: float) -> Values:
+    """Give the largest error of three points along the joints' axes, (F, J), computed anew."""
+    points = []
+    for one in (clip, other):
+        w, x, y, z = np.moveaxis(rotations(one), -1, 0)
+        axes = [
+            [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)],
+            [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)],
+            [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)],
+        ]
+        ends = np.moveaxis(np.array(axes), (0, 1), (-2, -1)) * radius
+        points.append(positions(one)[..., None, :] + ends)
+    errors: Values = np.linalg.norm(points[0] - points[1], axis=-1).max(axis=-1)
+    return errors
+
+
+def arm(frames: int, *, joints: int = 4, moving: float = 1.0, seed: int = 0) -> Clip:
+    """Give a chain of joints with three rotations, in centimetres; 1.7 m long."""
+    length = 170 / joints
+    chain = tuple(
+        Joint(
+            f"j{j}",
+            j - 1,
+            (0.0, length if j else 0.0, 0.0),
+            ("tx", "ty", "tz", "rz", "rx", "ry") if j == 0 else ("rz", "rx", "ry"),
+            ends=((0.0, length, 0.0),) if j == joints - 1 else (),
+        )
+        for j in range(joints)
+    )
+    columns = tuple(
+        Column(f"{joint.name}.{kind}", j, kind, "deg" if kind[0] == "r" else "length")
+        for j, joint in enumerate(chain)
+        for kind in joint.channels
+    )
+    random = np.random.default_rng(seed)
+    time = np.arange(frames)[:, None] / 40
+    speed, phase = random.uniform(0.3, 3, len(columns)), random.uniform(0, 6, len(columns))
+    values = 30 * moving * np.sin(time * speed + phase) + 10
+    return Clip.of(values, columns, None, Skeleton(chain))
+
+
+@pytest.mark.parametrize("asked", ["0.02cm", "0.1cm", "1cm", "3mm"])
+@pytest.mark.parametrize("name", ["cmu_01_01.amc", "mocapbank.bvh"])
+def test_no_joint_is_off_by_more_than_asked(samples: Path, name: str, asked: str) -> None:
+    clip = mp.read(samples / name)[:300]
+    unit = CMU if name.endswith("amc") else 1.0
+    most = {"0.02cm": 0.02, "0.1cm": 0.1, "1cm": 1.0, "3mm": 0.3}[asked] / unit
+    decoded = decoded_by(mp.codec(f"near:max={asked}"), clip)
+    errors = joint_errors(clip, decoded, 3 / unit)
+    assert 0.2 * most < errors.max() <= most
+
+
+def test_the_mean_is_what_was_asked(samples: Path) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")[:400]
+    decoded = decoded_by(mp.codec("near:mean=0.05cm"), clip)
+    mean = joint_errors(clip, decoded, 3 / CMU).mean() * CMU
+    assert mean == pytest.approx(0.05, rel=0.03)
+
+
+def test_what_it_costs_falls_with_the_error(samples: Path) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")[:400]
+    sizes = [len(mp.compress(clip, f"near:p={p}cm")) for p in ("0.01", "0.1", "1")]
+    assert sizes[0] > 1.5 * sizes[1] > 3 * sizes[2]
+    assert len(mp.compress(clip, "exact")) > 2 * sizes[0]
+
+
+def test_info_tells_the_errors(samples: Path, tmp_path: Path) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")[:100]
+    codec = mp.codec("near:max=0.1cm")
+    encoded = codec.encode(clip.main, skeleton=clip.skeleton)
+    told = codec.measure(clip, encoded, 1)
+    errors = joint_errors(clip, decoded_by(codec, clip), 3 / CMU)
+    assert told["largest_joint_error"] == pytest.approx(errors.max(), rel=0.01)
+    assert told["mean_joint_error"] == pytest.approx(errors.mean(), rel=0.01)
+    assert told["largest_joint_error"] >= errors.max()
+
+
+CODEC = "near:max=0.1cm"
+
+
+@pytest.mark.parametrize(
+    "clip",
+    [
+        arm(1),
+        arm(2),
+        arm(9),
+        arm(65),
+        arm(300, moving=0.0),
+        arm(300, joints=1),
+        arm(70, joints=40),
+    ],
+    ids=["one frame", "two", "nine", "65", "still", "one joint", "many joints"],
+)
+def test_odd_clips_keep_the_bound(clip: Clip) -> None:
+    errors = joint_errors(clip, decoded_by(mp.codec(CODEC), clip), 3)
+    assert errors.max() <= 0.1
+
+
+def test_jumps_keep_the_bound() -> None:
+    clip = arm(260)
+    values = clip.values.copy()
+    values[100:, 3] += 180
+    values[50:52, 4] = -500
+    values[::7, 0] += 1e5
+    clip = clip.with_values(values)
+    errors = joint_errors(clip, decoded_by(mp.codec(CODEC), clip), 3)
+    assert errors.max() <= 0.1
+
+
+def test_what_is_no_number_comes_back_as_it_is() -> None:
+    clip = arm(200)
+    values = clip.values.copy()
+    values[20:60, 5] = np.nan
+    values[0, 3] = values[199, 2] = np.inf
+    values[7, :] = -np.inf
+    values[:, 8] = np.nan
+    clip = clip.with_values(values)
+    found = decoded_by(mp.codec(CODEC), clip).values
+    lost = ~np.isfinite(values)
+    assert found[lost].tobytes() == values[lost].tobytes()
+    assert np.isfinite(found[~lost]).all()
+
+
+def test_translations_in_every_joint_count() -> None:
+    clip = arm(200)
+    assert clip.skeleton is not None
+    kinds = ("tx", "ty", "tz", "rz", "rx", "ry")
+    skeleton = Skeleton(tuple(replace(joint, channels=kinds) for joint in clip.skeleton.joints))
+    columns = tuple(
+        Column(f"j{j}.{kind}", j, kind, "deg" if kind[0] == "r" else "length")
+        for j in range(4)
+        for kind in kinds
+    )
+    values = np.random.default_rng(1).normal(0, 0.3, (200, len(columns))).cumsum(axis=0)
+    clip = Clip.of(values, columns, None, skeleton)
+    errors = joint_errors(clip, decoded_by(mp.codec(CODEC), clip), 3)
+    assert errors.max() <= 0.1
+
+
+def test_scales_are_kept_as_parts_of_the_figure() -> None:
+    clip = arm(200)
+    assert clip.skeleton is not None
+    joints = tuple(
+        replace(joint, channels=(*joint.channels, "sx")) for joint in clip.skeleton.joints
+    )
+    columns = (*clip.columns, *(Column(f"j{j}.sx", j, "sx") for j in range(4)))
+    scales = 1 + 0.2 * np.sin(np.arange(200)[:, None] / 30 + np.arange(4))
+    values = np.concatenate([clip.values, scales], axis=1)
+    clip = Clip.of(values, columns, None, Skeleton(joints))
+    decoded = decoded_by(mp.codec(CODEC), clip)
+    assert joint_errors(clip, decoded, 3).max() <= 0.1
+    # 0.1 cm of 170 cm.
+    assert np.abs(decoded.values - values)[:, -4:].max() <= 0.1 / 170
+
+
+@pytest.mark.parametrize("step", [1, 5])
+def test_any_frame_rate_will_do(samples: Path, step: int) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")[:600:step]
+    errors = joint_errors(clip, decoded_by(mp.codec("near:max=0.2cm"), clip), 3 / CMU)
+    assert errors.max() <= 0.2 / CMU
+
+
+def test_without_a_skeleton_errors_are_degrees() -> None:
+    clip = replace(arm(200), skeleton=None)
+    codec = mp.codec("near:max=0.05deg")
+    encoded = codec.encode(clip.main)
+    found = codec.decode(encoded.header, encoded.chunks, clip.columns)
+    assert 0.01 < np.abs(found - clip.values).max() <= 0.05
+    assert "largest_value_error" in codec.measure(clip, encoded, 1)
+    with pytest.raises(ParameterError, match=r"without a skeleton.*expected degrees"):
+        mp.codec("near:max=0.1cm").encode(clip.main)
+    assert decoded_by(mp.codec("near"), clip).values.shape == clip.values.shape
+
+
+def test_degrees_may_be_asked_for_with_a_skeleton() -> None:
+    clip = arm(200)
+    found = decoded_by(mp.codec("near:max=0.05deg"), clip).values
+    assert np.abs(found - clip.values).max() <= 0.05
+
+
+def test_unknown_units_take_a_quality() -> None:
+    """The figure's size is all that is known of it."""
+    clip = arm(200)
+    assert clip.skeleton is not None
+    joints = tuple(
+        replace(
+            joint,
+            offset=tuple(7.3 * x for x in joint.offset),  # type: ignore[arg-type]
+            ends=tuple(tuple(7.3 * x for x in end) for end in joint.ends),  # type: ignore[misc]
+        )
+        for joint in clip.skeleton.joints
+    )
+    other = Clip.of(clip.values * 1.0, clip.columns, None, Skeleton(joints))
+    with pytest.raises(ParameterError, match="units of the file are not known; expected quality"):
+        mp.codec("near:max=0.1cm").encode(other.main, skeleton=other.skeleton)
+    errors = joint_errors(other, decoded_by(mp.codec("near:quality=5"), other), 3 * 7.3)
+    assert errors.max() <= 1.6 * 0.1 * 7.3
+    assert joint_errors(other, decoded_by(mp.codec("near:max=0.5"), other), 3 * 7.3).max() <= 0.5
+
+
+def test_bounds_that_are_no_amounts_are_refused() -> None:
+    for wrong in ("max=0.1ft", "max=-1cm", "max=0", "mean=cm", "p=nan", "p=1e999cm"):
+        with pytest.raises(ParameterError, match="an amount above 0, such as"):
+            mp.codec(f"near:{wrong}")
+    for wrong in ("quality=0", "quality=10", "chunk=0", "max_error=-1", "p=1cm,max=1cm"):
+        with pytest.raises(ParameterError):
+            mp.codec(f"near:{wrong}")
+
+
+def test_amounts_become_units_of_the_file(samples: Path) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")
+    asked = {"most": amount("1cm", ""), "mean": None, "precision": None}
+    goal = goal_of(clip.skeleton, clip.columns, **asked, quality=5)
+    assert goal.most == pytest.approx(1 / CMU)
+    assert goal.radius == pytest.approx(3 / CMU)
+    mean = {"most": None, "mean": amount("0.5mm", ""), "precision": None}
+    goal = goal_of(clip.skeleton, clip.columns, **mean, quality=5)
+    assert goal.mean == pytest.approx(0.05 / CMU)
+    assert goal.most == inf
