@@ -1,7 +1,6 @@
 #include "exact/chain.hpp"
 
 #include <algorithm>
-#include <functional>
 
 #include "numbers/vector_clones.hpp"
 
@@ -99,7 +98,6 @@ void Chain::learn_all(std::span<Chain* const> chains, std::span<const double> we
           chain.size_,          chain.fading_, chain.triangle_.data(), chain.diagonal_.data(),
           chain.rest_.blocks(), weights[i]};
     }
-    std::ranges::stable_sort(std::span(rows).first(count), std::greater(), &Rows::size);
     update(rows, count);
   }
 }

@@ -40,7 +40,8 @@ class Chain {
     return values_[variable] - predictions_[variable];
   }
 
-  // Lets chains learn a frame each, several at a time, since none waits for another.
+  // Lets chains, the longest first, learn a frame each, several at a time, since none waits for
+  // another.
   static void learn_all(std::span<Chain* const> chains, std::span<const double> weights);
 
   template <class Visit>

@@ -13,6 +13,13 @@
 
 namespace mocapress::exact {
 
+inline constexpr double kLargest = 1e6;  // levels beyond are taken for this by the predictors
+
+// A level within reach; of NaN the lowest.
+inline double sane(double level) {
+  return level > -kLargest && level < kLargest ? level : level >= kLargest ? kLargest : -kLargest;
+}
+
 // The numbers that predictors work with: the last frames, this one as far as it is known.
 class Frames {
  public:

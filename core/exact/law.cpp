@@ -52,10 +52,8 @@ double twist(const Matrix& a, const Matrix& b) {
   return arc_tangent(dot(x, b[2]), dot(x, b[0]));
 }
 
-// g and h of a branch.
-struct Shares {
-  double near, root;
-};
+// g and h of a branch, and each of their terms.
+using Shares = double __attribute__((vector_size(2 * sizeof(double))));
 
 // Of which term and variable each term is the product, by degree: 1, a, b, c, aa, ab, ...
 struct Term {
@@ -81,14 +79,13 @@ constexpr std::array<Term, 35> make_terms() {
 
 constexpr std::array<Term, 35> kTerms = make_terms();
 
-Shares shares(const Branch& branch, const Vector& bends) {
+MOCAPRESS_IN_PLACE Shares shares(const Branch& branch, const Vector& bends) {
   std::array<double, 35> terms;
   terms[0] = 1;
-  Shares sum{branch.near[0], branch.root[0]};
+  Shares sum = {branch.near[0], branch.root[0]};
   for (std::size_t i = 1; i < terms.size(); ++i) {
     terms[i] = terms[kTerms[i].of] * bends[kTerms[i].times];
-    sum.near += branch.near[i] * terms[i];
-    sum.root += branch.root[i] * terms[i];
+    sum += Shares{branch.near[i], branch.root[i]} * terms[i];
   }
   return sum;
 }
@@ -210,7 +207,9 @@ Vector Law::last_axis(std::size_t branch, std::array<double, 2>& bends) const {
   Vector y3 = y2;
   if (!(bends[0] >= 0 && bends[1] >= 0)) bends = {1 - dot(kUp, y2), 1 - dot(y1_, y2)};
   for (int step = 0; step < kMostSteps; ++step) {
-    const auto [near, root] = shares(table, {bend, bends[0], bends[1]});
+    const Shares found_shares = shares(table, {bend, bends[0], bends[1]});
+    const double near = found_shares[0];
+    const double root = found_shares[1];
     const Vector rest = sum(y1_, scaled(kUp, root));
     const double along = dot(y2, rest);
     const double square = along * along - dot(rest, rest) + near * near;

@@ -26,7 +26,7 @@ void Lawful::predict(std::size_t channel, const Frames& frames, double* moves) {
   const auto found = std::ranges::find(coupling_.targets, channel);
   const auto target = static_cast<std::size_t>(found - coupling_.targets.begin());
   const double before = frames.level(channel, 1);
-  const double now = told(target, frames, before / units_[channel]) * units_[channel];
+  const double now = sane(told(target, frames, before / units_[channel]) * units_[channel]);
   moves[0] = now - before;
   const double missed = seen_ > 0 ? before - told_[target] : 0;
   moves[1] = moves[0] + missed;

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -16,7 +17,7 @@
 
 #include "coding/sides.hpp"
 #include "exact/blend.hpp"
-#include "exact/choice.hpp"
+#include "exact/channel.hpp"
 #include "exact/codec.hpp"
 #include "exact/expert.hpp"
 #include "exact/kinematics.hpp"
@@ -28,47 +29,15 @@
 #include "exact/plan.hpp"
 #include "exact/residual.hpp"
 #include "exact/spread.hpp"
-#include "exact/turns.hpp"
 
 namespace mocapress::exact {
 
-inline constexpr double kLargest = 1e6;  // levels beyond are taken for this by the predictors
 inline constexpr double kFloor = 0.1;  // in steps: as close as a prediction can be expected to come
 inline constexpr double kFarthest = 20;         // in scales: an error beyond counts as that
 inline constexpr double kRounding = 0.15;       // in steps: what rounding adds to the scale
 inline constexpr std::uint32_t kNoCut = 65512;  // its chance, in 1/65536
 // The first levels that have them.
 inline constexpr int kLastStageFrom = 5, kNetworkFrom = 7, kMemoriesFrom = 9;
-
-// One channel: everything about it that the channels do not share.
-struct Channel {
-  NumberLine line;
-  double unit;      // from numbers to levels
-  double per_unit;  // and back
-  double share;     // of each expert in a mean
-  std::vector<std::size_t> experts;
-  std::vector<std::size_t> slots;  // of the experts
-  std::optional<Turns> turns;
-  Lawful* law;  // or none
-  Blends* blends = nullptr;
-  std::size_t blend = 0;  // its place in `blends`
-  std::size_t from = 0;   // what a blend trusts at first: the predictors from <= i < to
-  std::size_t to = 0;
-  Choice<Lawful::kPredictions + 1> choice{};  // of the law's predictions and the blend
-};
-
-// What was learned is kept as floats, chances in 24 bits.
-inline float kept(double value) { return static_cast<float>(value); }
-inline float kept(std::uint16_t value) { return value; }
-inline float kept(std::uint32_t value) { return static_cast<float>(value >> 8); }
-
-inline void take(double& value, float from) { value = from; }
-inline void take(std::uint16_t& value, float from) {
-  value = static_cast<std::uint16_t>(std::clamp(from, 15.0f, 65520.0f));
-}
-inline void take(std::uint32_t& value, float from) {
-  value = static_cast<std::uint32_t>(std::clamp(from, 1.0f, 16777215.0f)) << 8;
-}
 
 class Model {
  public:
@@ -107,7 +76,11 @@ class Model {
     if (clip.level >= kLastStageFrom) last_.emplace(count_, slots());
     if (clip.level >= kNetworkFrom) network_.emplace(count_);
     gather_blends(clip.level >= kMemoriesFrom ? Blends::kMostMemories : 1);
-    for (auto& expert : experts_) chains_.push_back(&expert.chain());
+    // Longer chains come first, so that those that learn together are of one length.
+    for (auto& expert : experts_) learners_.push_back(&expert);
+    std::ranges::stable_sort(learners_, std::greater(),
+                             [](Expert* e) { return e->chain().size(); });
+    for (auto* expert : learners_) chains_.push_back(&expert->chain());
     // Those of the experts, of the own chains, of a law, and the blend.
     predictions_.resize(experts_.size() + 1 + Lawful::kPredictions + 1);
     begin_with(clip.start);
@@ -141,7 +114,7 @@ class Model {
     if (kinematics_) kinematics_->begin(frames_);
     for (std::size_t c = 0; c < count_; ++c) row[c] = code_number(side, c, row[c]);
     weights_.clear();
-    for (auto& expert : experts_) weights_.push_back(expert.weigh(frames_));
+    for (auto* expert : learners_) weights_.push_back(expert->weigh(frames_));
     Chain::learn_all(chains_, weights_);
     if (has_own_) own_.learn(frames_);
     for (auto& blends : blends_) blends.learn();
@@ -233,7 +206,7 @@ class Model {
   template <class Side>
   double code_number(Side& side, std::size_t c, double number) {
     Channel& channel = channels_[c];
-    if (kinematics_) frames_.set_guess(c, kinematics_->guess(c, frames_));
+    if (kinematics_) frames_.set_guess(c, sane(kinematics_->guess(c, frames_)));
     const std::size_t count = channel.experts.size();
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t expert = channel.experts[i];
@@ -325,10 +298,6 @@ class Model {
   static constexpr double kTiny = 1e-9;
   static constexpr std::size_t kOwn = ~std::size_t{0};  // in place of an expert
 
-  static double sane(double level) {
-    return level > -kLargest && level < kLargest ? level : level >= kLargest ? kLargest : -kLargest;
-  }
-
   double level(std::size_t c, double number) const {
     const double level = number * channels_[c].unit;
     return level == level ? sane(level) : 0;
@@ -349,6 +318,7 @@ class Model {
   Spreads spreads_;
   Residual residual_;
   std::vector<double> predictions_;
+  std::vector<Expert*> learners_;
   std::vector<Chain*> chains_;
   std::vector<double> weights_;
   std::vector<float>* seen_ = nullptr;

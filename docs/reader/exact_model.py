@@ -26,7 +26,8 @@ class Told:
     def predict(self) -> list[float]:
         """Give three moves."""
         last = self.levels.past[self.channel][1]
-        t = self._angle(self.levels.number(self.channel, 1)) * self.levels.units[self.channel]
+        angle = self._angle(self.levels.number(self.channel, 1))
+        t = cut(angle * self.levels.units[self.channel], -1e6, 1e6)
         a = t - last
         m = last - self.t if self.frames > 0 else 0.0
         b = a + m

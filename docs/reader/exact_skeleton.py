@@ -137,7 +137,7 @@ class Skeleton:
         for j, factor in zip(self.before[k], self.rows[k], strict=True):
             bend = levels.difference(2, j, 0) / levels.units[j]
             guess -= factor * cut(bend, -1e5, 1e5)
-        return cut(guess, -1e5, 1e5) * levels.units[k]
+        return cut(cut(guess, -1e5, 1e5) * levels.units[k], -1e6, 1e6)
 
     def _pose(self, angles: list[float]) -> list[tuple[Matrix, Vector]]:
         """Poses: give matrix and end of each bone; the twists of channels stay in ``twists``."""

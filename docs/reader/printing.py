@@ -25,9 +25,9 @@ def printed(number: float, told: bytes) -> str:
     kind, digits, exponent_digits, flags = told
     plus = "+" if flags & PLUS else ""
     sign, size = "-" if math.copysign(1.0, number) < 0 else plus, abs(number)
-    if kind == SHORTEST32 and size <= math.inf:  # pragma: no cover - files are printed by kind 4
+    if kind == SHORTEST32 and size <= math.inf:  # pragma: no cover - in test_reader
         size = of_bits32(bits32(size))
-    if not size < math.inf:  # pragma: no cover - what is read from text has neither
+    if not size < math.inf:  # pragma: no cover - in test_reader
         return sign + ("inf" if size == math.inf else "nan")
     if kind in (FIXED, TRIMMED):
         text = fixed(size, kind, digits, flags)
@@ -54,7 +54,7 @@ def fixed(size: float, kind: int, decimals: int, flags: int) -> str:
         text = f"{size:.{decimals}f}"
     if flags & BARE_POINT and text.startswith("0."):
         text = text[1:]
-    if kind == TRIMMED and decimals:  # pragma: no cover - no golden file has it any more
+    if kind == TRIMMED and decimals:  # pragma: no cover - in test_reader
         text = text.rstrip("0")
         if text.endswith("."):
             text = (text[:-1] or "0"[: not flags & POINT_ZERO]) + whole_end(flags)

@@ -102,7 +102,7 @@ WALK_AMC, WALK_LF, WALK_BVH = amc("\r\n").encode(), amc("\n").encode(), (BVH + b
 POLE_ROWS = ["0 0 0 0 90 0 0 90 0"] * FRAMES
 POLE_ROWS[9] = "1e18 0 0 0 90 0 0 90 0"
 POLE = (BVH + "\n".join([*POLE_ROWS, ""])).encode()
-# What is compressed, and how; all but the bytes have at least three chunks. NAME.mcz holds NAME.
+# What is compressed, and how; of each codec some have at least three chunks. NAME.mcz holds NAME.
 FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_walk.amc": (WALK_AMC, "app:chunk=75", {}),
     "v1_walk_lf.amc": (

@@ -34,7 +34,7 @@ def columns(choice: random.Random, count: int, far: int) -> list[Column]:
         Column(
             Line(*choice.choice(lines)),
             c,
-            unit=2.0 ** choice.choice([0, 0, 0, -far, -8, 8]),
+            unit=2.0 ** choice.choice([0, 0, 0, -far, -8, 8, far if far > 104 else 0]),
             turns=choice.choice([0, 0, 1, 2]),
         )
         for c in range(count)
@@ -58,33 +58,65 @@ def motion(choice: random.Random, frames: int, told: list[Column]) -> NDArray[np
     return found
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_any_columns_decode_to_the_same_bits(seed: int) -> None:
-    choice = random.Random(seed)
-    level = 1 + seed % 9
-    frames = choice.choice([5, 30]) if level > 2 else 90
-    told = columns(choice, choice.choice([3, 9, 14]), far=104 if level > 2 else 1000)
-    told[-1].noise, told[-1].unit, told[-1].turns = True, 1.0, 0
-    values = motion(choice, frames, told)
-    couplings = [Coupling(choice.choice([1, 2]), [*range(6)], [6, 7, 8])] if len(told) > 9 else []
-    couplings += [Coupling(0, [0, 1], [4, 5])] if len(told) > 3 else []
+def check(
+    level: int,
+    told: list[Column],
+    values: NDArray[np.float64],
+    couplings: list[Coupling],
+    *,
+    known: bool = False,
+) -> None:
+    """Encode with the core, decode with the reader."""
     plan = [
-        (one.line.kind, one.line.digits, one.noise, np.log2(one.unit), one.turns, -1)
-        for one in told
+        (
+            one.line.kind,
+            one.line.digits,
+            one.noise,
+            np.log2(one.unit),
+            one.turns,
+            c if known else -1,
+        )
+        for c, one in enumerate(told)
     ]
     payload, _ = _core.exact_encode(
         values,
         np.array(plan, dtype=np.int32),
-        [(one.kind, one.sources, one.targets, []) for one in couplings] if level > 2 else [],
+        [(one.kind, one.sources, one.targets, []) for one in couplings],
         level,
         ([], []),
         False,
     )
     if level < 3:
-        rows = exact_fast.decode(payload, frames, told, level)
+        rows = exact_fast.decode(payload, len(values), told, level)
     else:
         stream = Coded(payload)
-        part = Part(stream, level, told, couplings, False, {})
-        rows = [part.frame(first=frame == 0) for frame in range(frames)]
+        part = Part(stream, level, told, couplings, known, {})
+        rows = [part.frame(first=frame == 0) for frame in range(len(values))]
         stream.end()
     assert np.array(rows).tobytes() == values.tobytes()
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_any_columns_decode_to_the_same_bits(seed: int) -> None:
+    choice = random.Random(seed)
+    level = 1 + seed % 9
+    frames = choice.choice([5, 30]) if level > 2 else 90
+    told = columns(choice, choice.choice([3, 9, 14]), far=1000)
+    told[-1].noise, told[-1].unit, told[-1].turns = True, 1.0, 0
+    values = motion(choice, frames, told)
+    couplings = [Coupling(choice.choice([1, 2]), [*range(6)], [6, 7, 8])] if len(told) > 9 else []
+    couplings += [Coupling(0, [0, 1], [4, 5])] if len(told) > 3 else []
+    check(level, told, values, couplings if level > 2 else [])
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_any_columns_of_the_known_skeleton_decode_to_the_same_bits(seed: int) -> None:
+    choice = random.Random(seed)
+    told = columns(choice, 62, far=1000)
+    values = motion(choice, 6, told)
+    check(8 + seed % 2, told, values, [Coupling(2, [*range(6)], [6, 7, 8])], known=True)
+
+
+def test_a_prediction_beyond_its_line_decodes_to_the_same_bits() -> None:
+    told = [Column(Line(SIGNIFICANT, 6), 0, unit=2.0**-1000)]
+    check(3, told, np.array([[5e299], [9.9e299], [9.9e299], [1e299]]), [])

@@ -34,7 +34,9 @@ _FAST_LEVELS = 2
 _TRIED = 256
 """Frames on which lower levels are tried, too."""
 _OTHERS = (5, 2, 1)
-"""Levels that are tried besides the one below."""
+"""Lower levels that are always tried."""
+_COSTLY, _NEAR = 7, 1.015
+"""From this level on the one below is tried only where others come so near."""
 _SURE = 0.997
 """How much smaller a lower level must be where there are more frames than are tried."""
 _TELLING = 2
@@ -190,21 +192,27 @@ def _smallest(roles: Roles, level: int, values: NDArray[np.float64]) -> tuple[Ro
     """Give how a clip is coded in the fewest bytes, as far as its first frames tell.
 
     More predictors are not better ones for every clip, least of all for short ones. Tried are the
-    level, the one below it, and those that differ most.
+    level, those that differ most, and the one below.
     """
     rows = values[:_TRIED]
-    best, smallest = (roles, level), float("inf")
-    for own in sorted({level, level - 1, *_OTHERS}, reverse=True):
-        if not 1 <= own <= level:
-            continue
-        plan = replace(roles, couplings=()) if own <= _FAST_LEVELS else roles
-        header = pack_header(plan, Told(), has_model=False, level=None if own == level else own)
-        size: float = len(header) + len(_Coder(plan, own, Start()).encode(rows)[0])
-        if own < level and len(rows) < len(values):
-            size /= _SURE
-        if size < smallest:
-            best, smallest = (plan, own), size
-    return best
+
+    def at(own: int) -> Roles:
+        return replace(roles, couplings=()) if own <= _FAST_LEVELS else roles
+
+    def size(own: int) -> float:
+        header = pack_header(at(own), Told(), has_model=False, level=None if own == level else own)
+        found = len(header) + len(_Coder(at(own), own, Start()).encode(rows)[0])
+        return found / _SURE if own < level and len(rows) < len(values) else found
+
+    tried = [level, *(other for other in _OTHERS if other < level)]
+    sizes = dict(zip(tried, each(size, tried), strict=True))
+    below = level - 1
+    if below > 0 and below not in sizes:
+        others = min(sizes[other] for other in tried[1:])
+        if level < _COSTLY or others < _NEAR * sizes[level]:
+            sizes[below] = size(below)
+    best = min(sizes, key=lambda own: (sizes[own], -own))
+    return at(best), best
 
 
 class _Coder:
