@@ -99,7 +99,7 @@ compilers:
 
 # The core for the page, in modules of which it carries those that it needs; viewer/wasm/ keeps what
 # this builds.
-decoders := app diffma exact near qssd
+decoders := app diffma exact mrpa near qssd
 wasm_modules := $(patsubst %,build/wasm/%.wasm,$(decoders) formats kinematics)
 ZIG := $(BIN)/python -m ziglang c++ -target wasm32-wasi -std=c++20 -ffp-contract=off -fno-math-errno -fno-exceptions \
     -fno-rtti -msimd128 -flto -Wall -Wextra -Icore -Wl,--strip-all
@@ -110,7 +110,7 @@ wasm: $(wasm_modules)
 $(wasm_modules): build/wasm/%.wasm: $(wildcard core/wasm/*) $(kernels) $(headers) | $(VENV)/.zig
 	@mkdir -p $(@D)
 	$(ZIG) -Os -mexec-model=reactor core/wasm/space.cpp core/wasm/$*.cpp $(if $(filter $*,$(decoders)),core/wasm/decoder.cpp) \
-	    $(wildcard $(patsubst %,core/%/*.cpp,$(if $(filter kinematics,$*),motion,$*) $*_fast coding numbers)) -o $@
+	    $(wildcard $(patsubst %,core/%/*.cpp,$(if $(filter kinematics,$*),motion,$*) $*_fast $(if $(filter mrpa,$*),app) coding numbers)) -o $@
 
 # The compiler for WebAssembly has 0.4 GB; no user needs it, and developers only for `make wasm`. One
 # version, so that every machine builds the same bytes.
@@ -142,7 +142,8 @@ check_wasm := $(ZIG) -O2 $(ONE)
 build/check/%: $(wildcard core/check/*) $(kernels) $(headers)
 	@mkdir -p $(@D)
 	$(check_$(*D)) core/check/$(basename $(*F)).cpp \
-	    $(wildcard core/$(basename $(*F))/*.cpp core/$(basename $(*F))_*/*.cpp) \
+	    $(wildcard core/$(basename $(*F))/*.cpp core/$(basename $(*F))_*/*.cpp \
+	    $(if $(filter mrpa,$(basename $(*F))),core/app/*.cpp)) \
 	    core/coding/record.cpp core/motion/kinematics.cpp core/numbers/line.cpp \
 	    core/numbers/powers.cpp core/numbers/text.cpp -o $@
 

@@ -74,6 +74,7 @@ def test_importing_mocapress_loads_no_numpy_and_no_extras() -> None:
         "pcodec",
         "numcodecs",
         "torch",
+        "cv2",
     }
     code = f"import sys, mocapress; print(sorted({heavy!r} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -3,49 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <optional>
-#include <tuple>
 
-#include "app/correction.hpp"
+#include "app/stored.hpp"
 #include "coding/fail.hpp"
 #include "coding/sides.hpp"
 
 namespace mocapress::app {
 namespace {
-
-// The contexts of a chunk; those of doubles are large and mostly not needed.
-class Corrections {
- public:
-  explicit Corrections(int mantissa_limit) : limit_(mantissa_limit) {}
-
-  template <class Float>
-  Correction<Float>& of() {
-    auto& held = std::get<std::optional<Correction<Float>>>(held_);
-    if (!held) held.emplace(limit_);
-    return *held;
-  }
-
-  bool sound() const {
-    return std::apply([](const auto&... held) { return ((!held || held->sound()) && ...); }, held_);
-  }
-
- private:
-  int limit_;
-  std::tuple<std::optional<Correction<float>>, std::optional<Correction<double>>> held_;
-};
-
-// Calls `work` with a float or a double 0, as the column is stored.
-template <class Work>
-void with_type(Precision precision, Work work) {
-  precision == Precision::float64 ? work(double{0}) : work(float{0});
-}
-
-// P of Eq. 6; a NaN has no defined bits and is replaced by 0.
-template <class Float>
-Float predicted(double before, double step) {
-  const double prediction = before + step;
-  return std::isnan(prediction) ? Float{0} : static_cast<Float>(prediction);
-}
 
 // The second term of Eq. 6, for the rows of a column after the first.
 void fill_steps(std::span<double> steps, const double* parent, const std::uint8_t* choices,
@@ -195,7 +159,7 @@ void for_each_column(Columns& matrix, std::size_t frames, std::span<const Column
     fill_steps(steps, matrix.parent_of(columns[c]), choices.data() + c * clusters, parameters);
     with_type(columns[c].precision, [&](auto zero) {
       visit(matrix[c], [&, column = matrix[c]](std::size_t j) {
-        return j == 0 ? zero : predicted<decltype(zero)>(column[j - 1], steps[j]);
+        return j == 0 ? zero : rounded<decltype(zero)>(column[j - 1] + steps[j]);
       });
     });
   }
@@ -218,18 +182,6 @@ void code_columns(Side& side, Columns& matrix, std::size_t frames, std::span<con
     }
   });
   if (!corrections.sound()) fail("a correction leaves its range");
-}
-
-// Writes the values row by row, moved to their lines.
-void restore(Columns& matrix, double* values, std::size_t frames, std::span<const Column> columns) {
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    const double* column = matrix[c];
-    const bool snapped = columns[c].precision == Precision::snapped32;
-    const NumberLine line(snapped ? columns[c].line : Line::float64, columns[c].digits);
-    for (std::size_t j = 0; j < frames; ++j) {
-      values[j * columns.size() + c] = line.nearest(column[j]);
-    }
-  }
 }
 
 }  // namespace
@@ -282,7 +234,9 @@ void decode(ByteView payload, double* values, std::size_t frames, std::span<cons
   Columns matrix(frames, columns);
   code_columns(side, matrix, frames, columns, parameters, choices);
   if (!side.exhausted()) fail("bytes are left over after the values");
-  restore(matrix, values, frames, columns);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    restore_column(matrix[c], values + c, frames, columns.size(), columns[c]);
+  }
 }
 
 std::vector<double> ideal_alphas(const double* values, std::size_t frames,

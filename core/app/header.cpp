@@ -45,6 +45,11 @@ std::int32_t parent_of(std::size_t column, std::uint64_t distance, std::size_t c
 
 }  // namespace
 
+Column column_of(const NumberFormat& format, std::uint64_t precision) {
+  const auto [line, digits] = line_of(format);
+  return {-1, static_cast<Precision>(precision), line, digits};
+}
+
 std::vector<Column> read_header(ByteView header, std::span<const NumberFormat> formats) {
   Record record(header);
   const std::size_t count = formats.size();
@@ -54,9 +59,8 @@ std::vector<Column> read_header(ByteView header, std::span<const NumberFormat> f
   std::vector<Column> columns;
   columns.reserve(count);
   for (std::size_t c = 0; c < count; ++c) {
-    const auto [line, digits] = line_of(formats[c]);
-    columns.push_back(
-        {parent_of(c, distances[c], count), static_cast<Precision>(precisions[c]), line, digits});
+    columns.push_back(column_of(formats[c], precisions[c]));
+    columns.back().parent = parent_of(c, distances[c], count);
   }
   return columns;
 }

@@ -14,4 +14,7 @@ namespace mocapress::app {
 // one of so many columns.
 std::vector<Column> read_header(ByteView header, std::span<const NumberFormat> formats);
 
+// A column without a parent, of a precision as headers have it.
+Column column_of(const NumberFormat& format, std::uint64_t precision);
+
 }  // namespace mocapress::app

@@ -19,10 +19,10 @@ inline constexpr int kShortest = 8;
 inline constexpr std::array<int, 17> kEnds = {0,  1,  2,  3,  4,  6,   8,   11, 16,
                                               22, 32, 45, 64, 90, 128, 181, 255};
 
-// Frames of the span that begins at a frame of a chunk, where so many are left: the first are
-// short, for there is nothing yet to learn from.
-inline int span_of(std::size_t first, std::size_t left) {
-  int length = first < 128 ? 64 : first < 256 ? 128 : kLongest;
+// Frames of the span that begins at a frame of a chunk, where so many are left. Where the first are
+// short, channels learn early to foretell each other.
+inline int span_of(bool early, std::size_t first, std::size_t left) {
+  int length = !early || first >= 256 ? kLongest : first < 128 ? 64 : 128;
   while (length > kShortest && static_cast<std::size_t>(length / 2) >= left) length /= 2;
   return length;
 }
@@ -54,6 +54,7 @@ struct Joints {
 
 // What all channels of a clip share, and what each has of its own.
 struct Plan {
+  bool early = true;  // whether the first spans are short
   double knot = 0.5;  // the step of knots, in steps of the channel
   double first = 1;   // what a coefficient of 1 stands for, in steps
   std::vector<double> steps;

@@ -26,7 +26,7 @@ class Decoding {
     begin();
     int length = 0;
     for (std::size_t first = 0; first < frames_; first += static_cast<std::size_t>(length)) {
-      length = span_of(first, frames_ - first);
+      length = span_of(plan_.early, first, frames_ - first);
       const std::size_t count =
           std::min<std::size_t>(static_cast<std::size_t>(length), frames_ - first);
       prediction_.begin_span(length);
@@ -122,14 +122,14 @@ Prediction prediction_of(const Coder& coder, const Plan& plan) {
     steps.push_back(plan.steps[channel.index]);
     firsts.push_back(channel.last);
   }
-  return {sources_of(plan.joints, columns), steps, firsts};
+  return {sources_of(plan.joints, columns), steps, firsts, plan.early ? 3.0 : 100.0};
 }
 
 Plan read_header(ByteView header, std::size_t columns) {
   Record record(header);
   Plan plan;
   record.numbers(2);  // how far the clip was found to be off: for readers, not for decoding
-  record.integer(1);
+  plan.early = record.integer(3) < 2;
   plan.knot = static_cast<double>(record.integer(63) + 1) / 8;
   plan.first = static_cast<double>(record.integer(63) + 1) / 64;
   const std::int64_t base = record.signed_integer();

@@ -80,7 +80,7 @@ struct Mixer {
   std::array<std::int32_t, kInputs> weights;
   std::int32_t uses = 0;
 
-  Mixer() { weights.fill(9830); }
+  Mixer() { weights.fill(6000); }
 
   int mixed(const std::array<std::int32_t, kInputs>& inputs) const {
     std::int32_t sum = 0;

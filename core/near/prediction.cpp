@@ -13,9 +13,7 @@ namespace mocapress::near {
 namespace {
 
 constexpr std::size_t kMostSources = 20;
-constexpr double kFade = 0.95;   // of what was seen, in a span
-constexpr double kCaution = 10;  // observations of sources that foretell nothing
-constexpr double kNoise = 0.3;   // of a step, squared: below it nothing is to be foretold
+constexpr double kFade = 0.95;  // of what was seen, in a span
 
 // sqrt(2 / 64) cos(pi k (t + 1/2) / 64) at [64 (k - 1) + t].
 const std::vector<double>& cosines() {
@@ -97,8 +95,9 @@ std::vector<std::vector<std::size_t>> sources_of(const Joints& joints,
 }
 
 Prediction::Prediction(std::vector<std::vector<std::size_t>> sources,
-                       const std::vector<double>& steps, const std::vector<double>& firsts)
-    : channels_(sources.size()) {
+                       const std::vector<double>& steps, const std::vector<double>& firsts,
+                       double caution)
+    : channels_(sources.size()), caution_(caution) {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Own& own = channels_[i];
     own.sources = std::move(sources[i]);
@@ -122,7 +121,7 @@ void Prediction::predict(std::size_t i, double* curve) {
   for (std::size_t a = 0; a < m; ++a) {
     const double step = channels_[own.sources[a / 2]].step;
     double& entry = matrix[a * m + a];
-    entry = entry + entry * (kCaution / seen_);
+    entry = entry + entry * (caution_ / seen_);
     entry = entry + step * step / (own.step * own.step);
   }
   if (!solve(matrix, shares)) return;
@@ -194,7 +193,7 @@ void Prediction::learn(std::size_t i, const std::vector<double>& waves) {
     for (std::size_t j = k - std::min<std::size_t>(k, 2); j < std::min(kWaves, k + 3); ++j) {
       energy += rest[j] * rest[j];
     }
-    const double weight = 1 / (kNoise * (own.step * own.step) + energy / 5);
+    const double weight = 1 / (own.step * own.step + energy / 5);
     for (std::size_t a = 0; a < m; ++a) {
       sources[a] = waves[(own.sources[a / 2] * 3 + a % 2) * kWaves + k];
     }

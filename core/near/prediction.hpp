@@ -19,9 +19,10 @@ std::vector<std::vector<std::size_t>> sources_of(const Joints& joints,
 class Prediction {
  public:
   Prediction() = default;
-  // Of the channels that move: their sources, their steps, and where each begins.
+  // Of the channels that move: their sources, their steps, and where each begins; and how many
+  // observations of sources that foretell nothing are assumed.
   Prediction(std::vector<std::vector<std::size_t>> sources, const std::vector<double>& steps,
-             const std::vector<double>& firsts);
+             const std::vector<double>& firsts, double caution);
 
   void begin_span(int length);
   // Of channel i in the frames of the span, when those before it are told.
@@ -49,6 +50,7 @@ class Prediction {
   void learn(std::size_t i, const std::vector<double>& waves);
 
   std::vector<Own> channels_;
+  double caution_ = 0;
   std::size_t length_ = 0;
   double seen_ = 0;  // observations, which fade
 };

@@ -6,23 +6,10 @@
 #include "coding/numbers.hpp"
 #include "coding/sides.hpp"
 #include "python/bindings.hpp"
+#include "python/float_columns.hpp"
 
 namespace mocapress {
 namespace {
-
-// Parent, precision, line, digits.
-using AppPlan = Plan<std::int32_t, 4>;
-
-std::vector<app::Column> columns_of(const AppPlan& plan, std::size_t count) {
-  if (plan.shape(0) != count) throw std::invalid_argument("the plan is not for these columns");
-  std::vector<app::Column> columns(count);
-  for (std::size_t c = 0; c < count; ++c) {
-    const std::int32_t* row = plan.data() + 4 * c;
-    const Line line = line_exists(row[2], row[3]) ? static_cast<Line>(row[2]) : Line::float64;
-    columns[c] = {row[0], static_cast<app::Precision>(row[1]), line, row[3]};
-  }
-  return columns;
-}
 
 app::Parameters parameters_of(const Input<double, 1>& alphas, std::size_t cluster,
                               int mantissa_limit) {
@@ -33,9 +20,9 @@ app::Parameters parameters_of(const Input<double, 1>& alphas, std::size_t cluste
   return {{alphas.data(), size}, cluster, mantissa_limit};
 }
 
-nb::bytes encode(const Input<double, 2>& values, const AppPlan& plan,
+nb::bytes encode(const Input<double, 2>& values, const FloatPlan& plan,
                  const Input<double, 1>& alphas, std::size_t cluster, int mantissa_limit) {
-  const auto columns = columns_of(plan, values.shape(1));
+  const auto columns = float_columns(plan, values.shape(1));
   const auto parameters = parameters_of(alphas, cluster, mantissa_limit);
   Bytes payload;
   {
@@ -45,17 +32,17 @@ nb::bytes encode(const Input<double, 2>& values, const AppPlan& plan,
   return to_python(payload);
 }
 
-void decode(const nb::bytes& payload, const Output<double, 2>& values, const AppPlan& plan,
+void decode(const nb::bytes& payload, const Output<double, 2>& values, const FloatPlan& plan,
             const Input<double, 1>& alphas, std::size_t cluster, int mantissa_limit) {
-  const auto columns = columns_of(plan, values.shape(1));
+  const auto columns = float_columns(plan, values.shape(1));
   const auto parameters = parameters_of(alphas, cluster, mantissa_limit);
   const ByteView bytes = view(payload);
   nb::gil_scoped_release unlocked;
   app::decode(bytes, values.data(), values.shape(0), columns, parameters);
 }
 
-std::vector<int> precisions(const Input<double, 2>& values, const AppPlan& plan) {
-  const auto columns = columns_of(plan, values.shape(1));
+std::vector<int> precisions(const Input<double, 2>& values, const FloatPlan& plan) {
+  const auto columns = float_columns(plan, values.shape(1));
   std::vector<int> found;
   nb::gil_scoped_release unlocked;
   for (const auto precision : app::precisions(values.data(), values.shape(0), columns)) {
@@ -64,24 +51,24 @@ std::vector<int> precisions(const Input<double, 2>& values, const AppPlan& plan)
   return found;
 }
 
-std::vector<double> ideal_alphas(const Input<double, 2>& values, const AppPlan& plan,
+std::vector<double> ideal_alphas(const Input<double, 2>& values, const FloatPlan& plan,
                                  std::size_t cluster) {
-  const auto columns = columns_of(plan, values.shape(1));
+  const auto columns = float_columns(plan, values.shape(1));
   if (cluster == 0) throw std::invalid_argument("clusters of no frames");
   nb::gil_scoped_release unlocked;
   return app::ideal_alphas(values.data(), values.shape(0), columns, cluster);
 }
 
-double prediction_error(const Input<double, 2>& values, const AppPlan& plan,
+double prediction_error(const Input<double, 2>& values, const FloatPlan& plan,
                         const Input<double, 1>& alphas, std::size_t cluster) {
-  const auto columns = columns_of(plan, values.shape(1));
+  const auto columns = float_columns(plan, values.shape(1));
   const auto parameters = parameters_of(alphas, cluster, 0);
   nb::gil_scoped_release unlocked;
   return app::prediction_error(values.data(), values.shape(0), columns, parameters);
 }
 
-void snap_columns(const Output<double, 2>& values, const AppPlan& plan) {
-  const auto columns = columns_of(plan, values.shape(1));
+void snap_columns(const Output<double, 2>& values, const FloatPlan& plan) {
+  const auto columns = float_columns(plan, values.shape(1));
   nb::gil_scoped_release unlocked;
   std::vector<NumberLine> lines;
   for (const auto& column : columns) lines.emplace_back(column.line, column.digits);

@@ -62,6 +62,7 @@ void bind_rows(nb::module_& module);
 void bind_app(nb::module_& module);
 void bind_exact(nb::module_& module);
 void bind_diffma(nb::module_& module);
+void bind_mrpa(nb::module_& module);
 void bind_near(nb::module_& module);
 void bind_qssd(nb::module_& module);
 void bind_qssd_learning(nb::module_& module);

@@ -61,7 +61,7 @@ class Mixed:
             for table, place in enumerate(places)
         ]
         weights = [
-            self.weights.setdefault((of, choice, decision), [9830] * 16 + [0])
+            self.weights.setdefault((of, choice, decision), [6000] * 16 + [0])
             for of, choice in enumerate(choices)
         ]
         inputs = [LOGITS[chance >> 4] for entry in entries for chance in entry[:2]]
@@ -288,7 +288,7 @@ class Header:
     def __init__(self, header: bytes, columns: int) -> None:
         record = Record(header)
         record.numbers(2)
-        record.integer()
+        self.early = record.integer() < 2
         self.knot = (record.integer() + 1) / 8
         self.one = (record.integer() + 1) / 64
         exponent = record.signed()
@@ -347,6 +347,7 @@ class Foretelling:
         self.products = [[[0.0] * (2 * len(s)) for _ in range(2 * len(s))] for s in self.sources]
         self.targets = [[0.0] * (2 * len(s)) for s in self.sources]
         self.seen = 0.0
+        self.caution = 3.0 if header.early else 100.0
         self.features: list[tuple[list[float], list[float]]] = []
         self.rests: list[list[float]] = []
 
@@ -362,7 +363,7 @@ class Foretelling:
         matrix = [list(row) for row in self.products[i]]
         for a in range(size):
             step, own = self.channels[self.sources[i][a // 2]].step, self.channels[i].step
-            matrix[a][a] += matrix[a][a] * (10 / self.seen)
+            matrix[a][a] += matrix[a][a] * (self.caution / self.seen)
             matrix[a][a] += step * step / (own * own)
         shares = solved(matrix, list(self.targets[i]))
         for a, share in enumerate(shares):
@@ -409,7 +410,7 @@ class Foretelling:
             energy = 0.0
             for j in range(max(0, k - 2), min(62, k + 2) + 1):
                 energy += rest[j] * rest[j]
-            weight = 1 / (0.3 * (step * step) + energy / 5)
+            weight = 1 / (step * step + energy / 5)
             for a, source in enumerate(sources):
                 weighed = weight * source[k]
                 self.targets[i][a] += weighed * target[k]
@@ -470,7 +471,9 @@ class Chunk:
         self.begin()
         foretelling, first = Foretelling(self.channels, self.header), 0
         while first < self.frames:
-            n = 64 if first < 128 else 128 if first < 256 else 256
+            n = 256
+            if self.header.early and first < 256:
+                n = 64 if first < 128 else 128
             while n > 8 and n // 2 >= self.frames - first:
                 n //= 2
             foretelling.begin_span()

@@ -22,7 +22,7 @@ from container import Stream, packed, read_file, read_model
 from layout import Layout
 from records import CorruptError
 
-CODECS = ("app", "diffma", "exact", "near", "qssd")
+CODECS = ("app", "diffma", "exact", "mrpa", "near", "qssd")
 LOSSY = ("diffma", "near", "qssd")
 # What a broken file may lead to.
 BROKEN = (

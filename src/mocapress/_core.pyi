@@ -273,6 +273,31 @@ def diffma_decode(opcodes: bytes, table: Annotated[NDArray[numpy.float64], dict(
     Fill ``values``; ValueError where opcodes, table and their number do not agree.
     """
 
+def mrpa_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], parents: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], pieces: Annotated[NDArray[numpy.int64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], mantissa_limit: int, choice: int) -> bytes:
+    """
+    Code rows as a chunk; pieces are frames, whether with a parent, whether fresh.
+
+    ``choice``: see core/mrpa/codec.hpp; the plan is that of ``app_encode``.
+    """
+
+def mrpa_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], parents: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], pieces: Annotated[NDArray[numpy.int64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], mantissa_limit: int) -> None:
+    """Fill ``values`` from a chunk; ValueError where it is none."""
+
+def mrpa_estimated_bits(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], parents: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], pieces: Annotated[NDArray[numpy.int64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)]) -> list[float]:
+    """
+    Give about how many bits each piece takes without its parent and with it, by turns.
+    """
+
+def mrpa_grow(starts: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], matches: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], distances: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], clips: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], least_depth: int, deepest: bool) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.int64], dict(shape=(None,))], Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.float64], dict(shape=(None,))]]:
+    """
+    Give paths: first frames, where each begins in the next, matches, distances.
+    """
+
+def mrpa_refined(inputs: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)], frames: int, least_length: int, rates: Sequence[float]) -> Annotated[NDArray[numpy.int64], dict(shape=(None, None))]:
+    """
+    Give the segments that learn from the inputs, (S, 2): first and last frames.
+    """
+
 class NearMeasure:
     """In what errors of `near` are measured."""
 

@@ -111,6 +111,7 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
         {"notes": {"source": "made up", "license": "Apache-2.0", "author": "mocapress"}},
     ),
     "v1_walk.bvh": (WALK_BVH, "app:mantissa_limit=53,chunk=90", {}),
+    "v1_mrpa.amc": (WALK_AMC, "mrpa:chunk=75", {}),
     "v1_bytes.bin": (bytes(range(256)) * 3, "exact", {}),
     "v1_exact.amc": (WALK_AMC, "exact:chunk=80", {}),
     "v1_exact_strong.amc": (WALK_LF, "exact:level=9,chunk=100", {}),
@@ -122,6 +123,7 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     # Together with the above they take every branch of the decoders (tests/reader).
     "v1_couplings_near.bvh": (clips.couplings(), "near:quality=9,max=0.02", {}),
     "v1_numbers_near.bvh": (clips.numbers(), "near:max_error=0.01", {}),
+    "v1_coarse_near.amc": (WALK_LF, "near:quality=1", {}),
     "v1_random.bin": (random.Random(1).randbytes(200), "exact", {}),
     "v1_oddities.bvh": (clips.oddities(), "exact:chunk=12", {}),
     "v1_disorder.amc": (clips.disorder(), "exact:chunk=10", {}),
@@ -261,6 +263,10 @@ if __name__ == "__main__":
     # Without an original; NAME.f64 holds the numbers.
     numbers = mp.read(HERE / "v1_numbers.bvh")
     put("v1_numbers_app.mcz", lambda: mp.compress(numbers, "app:chunk=15"))
+    put(
+        "v1_numbers_mrpa.mcz",
+        lambda: mp.compress(numbers, "mrpa:mode=published,mantissa_limit=12,chunk=15"),
+    )
     put("v1_numbers_fast.mcz", lambda: mp.compress(numbers, "exact:level=2,chunk=16"))
     pole = mp.read(POLE)
     put("v1_sparse_pole.mcz", lambda: mp.compress(pole, "qssd:chunk=100"))

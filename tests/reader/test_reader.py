@@ -31,6 +31,9 @@ Values = NDArray[np.float64]
 CASES = [
     ("couplings.bvh", "app:chunk=30"),
     ("numbers.bvh", "app:t=4,table=k4-non-uniform,mantissa_limit=53,chunk=16"),
+    ("couplings.bvh", "mrpa:chunk=30"),
+    ("numbers.bvh", "mrpa:mantissa_limit=12,chunk=16"),
+    ("numbers.bvh", "mrpa:mode=published,chunk=20"),
     ("couplings.bvh", "diffma:bits=8,chunk=30,max_error=0.01,per=channel,order=auto"),
     ("numbers.bvh", "diffma:order=2,chunk=16,window=3"),
     ("couplings.bvh", "near:quality=8,chunk=200"),

@@ -23,7 +23,10 @@ ROOT = Path(__file__).parents[2]
 GOLDEN = ROOT / "tests/golden"
 SCRIPT = Path(__file__).with_name("mcz_digest.mjs")
 PATIENCE = 120
-CODECS = [*(f"exact:level={level}" for level in (1, 2, 3, 6, 9)), "app", "diffma", "near"]
+CODECS = [
+    *(f"exact:level={level}" for level in (1, 2, 3, 6, 9)),
+    *("app", "mrpa", "diffma", "near"),
+]
 FUZZ = runpy.run_path(str(ROOT / "core/fuzz/container.py"))
 
 

@@ -29,6 +29,11 @@ const CODECS = {
     const most = Math.ceil(chunk / cluster) * cluster;
     return { told: [...told, ...(alphas ?? ALPHAS["k3-non-uniform"])], most };
   },
+  mrpa(own) {
+    // In mode "published" a chunk is a segment, of any length.
+    const most = own.mode === "published" ? MOST_CHUNK : whole(own, "chunk", 480, MOST_CHUNK);
+    return { told: [whole(own, "mantissa_limit", 53, 53)], most };
+  },
   diffma(own) {
     const told = [whole(own, "bits", 6, 12), whole(own, "window", 64, MOST_CHUNK)];
     return { told, most: whole(own, "chunk", 2048, MOST_CHUNK), packed: true };

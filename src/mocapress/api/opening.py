@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import codecs
-from mocapress.codecs import Chunk, Codec, Model
+from mocapress.codecs import NO_OTHERS, Chunk, Codec, Model, Others
 from mocapress.container import CodedChunk, Damage, Entry, Mcz, StreamHead, open_mcz
 from mocapress.errors import CorruptError, MissingModelError, MocapressError, ParameterError
 from mocapress.models import Place, find_model
@@ -163,9 +163,21 @@ class Opened:
     def coded(self, stream: int = 0) -> tuple[Chunk, ...]:
         """Give all chunks of a stream as its codec made them."""
         return tuple(
-            Chunk(entry.first, entry.frames, self.mcz.read_chunk(entry).payload, entry.restart)
+            Chunk(entry.first, entry.frames, chunk.payload, entry.restart, chunk.needs)
             for entry in self.mcz.of_stream[stream]
+            for chunk in [self.mcz.read_chunk(entry)]
         )
+
+    def needed(self, stream: int, digests: Sequence[bytes]) -> Others:  # noqa: ARG002
+        """Give the frames of other chunks that chunks of a stream need.
+
+        Raises
+        ------
+        CorruptError
+            When they are nowhere.
+
+        """
+        raise CorruptError("a chunk needs frames of other clips, which only its library has")
 
     def _decode(
         self, stream: int, group: Sequence[Entry], last: int
@@ -175,13 +187,22 @@ class Opened:
             raise CorruptError(f"a chunk before frame {group[-1].first} is missing")
         read: list[CodedChunk] = [self.mcz.read_chunk(entry) for entry in group]
         chunks = [
-            Chunk(chunk.entry.first, chunk.entry.frames, chunk.payload, chunk.entry.restart)
+            Chunk(
+                chunk.entry.first,
+                chunk.entry.frames,
+                chunk.payload,
+                chunk.entry.restart,
+                chunk.needs,
+            )
             for chunk in read
         ]
         head = self.streams[stream]
         header = read[0].header if group[0].own_header else head.header
         stop = min(last, group[-1].last) - group[0].first
-        values = decoded(self.codec(stream), header, chunks, head, self.model(stream), stop)
+        digests = [digest for chunk in read for digest in chunk.needs]
+        others = self.needed(stream, digests) if digests else NO_OTHERS
+        codec, model = self.codec(stream), self.model(stream)
+        values = decoded(codec, header, chunks, head, model, stop, others)
         parts = []
         for chunk in read:
             begin = chunk.entry.first - group[0].first
@@ -204,6 +225,7 @@ def decoded(
     head: StreamHead,
     model: Model | None,
     stop: int,
+    others: Others = NO_OTHERS,
 ) -> NDArray[np.float64]:
     """Decode the first ``stop`` frames of successive chunks, the first a restart: (stop, C).
 
@@ -213,7 +235,7 @@ def decoded(
         When they do not follow the codec's format.
 
     """
-    values = codec.decode(header, chunks, head.columns, model=model, stop=stop)
+    values = codec.decode(header, chunks, head.columns, model=model, others=others, stop=stop)
     expected = stop, len(head.columns)
     if values.shape != expected:
         raise CorruptError("decoded values", expected=str(expected), found=str(values.shape))

@@ -11,14 +11,17 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, get_type_hints
 
 from mocapress.codecs.contract import (
+    NO_OTHERS,
     Bound,
     Capabilities,
     Chunk,
     Codec,
     Encoded,
     Model,
+    Origin,
     Others,
     Scope,
+    Together,
     digest_of,
 )
 from mocapress.errors import ParameterError, UnsupportedError
@@ -30,14 +33,17 @@ __all__ = [
     "DEFAULT_CODEC",
     "GROUP",
     "LEVELS",
+    "NO_OTHERS",
     "Bound",
     "Capabilities",
     "Chunk",
     "Codec",
     "Encoded",
     "Model",
+    "Origin",
     "Others",
     "Scope",
+    "Together",
     "codec",
     "codec_ids",
     "digest_of",
@@ -60,6 +66,7 @@ _REGISTRY: dict[str, tuple[str, str]] = {
     "exact": ("mocapress.codecs.exact", "Exact"),
     "app": ("mocapress.codecs.app", "App"),
     "diffma": ("mocapress.codecs.diffma", "DiffMA"),
+    "mrpa": ("mocapress.codecs.mrpa", "Mrpa"),
     "near": ("mocapress.codecs.near", "Near"),
     "qssd": ("mocapress.codecs.qssd", "QSSD"),
 }

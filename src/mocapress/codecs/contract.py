@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from math import inf
 from types import MappingProxyType
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ CHANNELS = "channels"
 """The kind of stream that all codecs of this version take: frames of float64 channels."""
 
 Others = Mapping[bytes, NDArray[np.float64]]
-"""Decoded chunks of other clips, (F, C) float64, by their ``digest_of``."""
+"""Decoded frames of other chunks, (F, C) float64, by their ``digest_of``."""
 NO_OTHERS: Others = MappingProxyType({})
 
 
@@ -39,7 +39,7 @@ class Scope(StrEnum):
 
     CLIP = "clip"
     LIBRARY = "library"
-    """Other clips, too: chunks may need chunks of theirs."""
+    """Other clips, too: chunks may need frames of theirs (``encode_together``)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ class Chunk:
     restart: bool = True
     """Whether decoding may begin here; otherwise it begins at the last chunk before with it."""
     needs: tuple[bytes, ...] = ()
-    """Which chunks of other clips decoding needs, by their ``digest_of``; scope library only."""
+    """Which frames of other chunks decoding needs, by their ``digest_of``; scope library only."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +85,24 @@ class Encoded:
     chunks: tuple[Chunk, ...]
     index_bytes: int = 0
     """How many of the payload bytes are side information (APP: the alpha indices, Eq. 10)."""
+
+
+class Origin(NamedTuple):
+    """Where frames that a chunk needs are."""
+
+    stream: int
+    """Index among the streams that were coded together."""
+    first: int
+    frames: int
+
+
+@dataclass(frozen=True, slots=True)
+class Together:
+    """Streams, coded together."""
+
+    encoded: tuple[Encoded, ...]
+    origins: Mapping[bytes, Origin]
+    """Where what chunks need is to be found, by its ``digest_of``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,6 +210,16 @@ class Codec(ABC):
             else, and never with more memory than a small multiple of (frames x columns x 8) bytes.
 
         """
+
+    def encode_together(
+        self, streams: Sequence[Stream], *, skeleton: Skeleton | None = None
+    ) -> Together:
+        """Code streams of the same columns, chunks beside frames of others (scope library).
+
+        What a chunk needs never needs that chunk again, whatever the way, and a codec says how
+        long such ways may be.
+        """
+        raise ParameterError(f"codec {self.id} codes clips one by one")
 
     def train(self, streams: Iterable[Stream]) -> Model:
         """Learn a model from streams, which are gone through once (capability ``trains``).

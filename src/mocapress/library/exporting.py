@@ -13,7 +13,7 @@ def export(db: Database, opened: OpenedClip) -> bytes:
     """Give a clip as a ``.mcz`` that holds everything it needs but models.
 
     Chunks are taken as they are. A clip with runs of others is coded again, unless its frames are
-    all that another has in its chunks.
+    all that another has in its chunks; so is one of which chunks need frames of others.
     """
     head, chunks = _coded(opened)
     parts: list[bytes] = []
@@ -35,10 +35,10 @@ def export(db: Database, opened: OpenedClip) -> bytes:
 def _coded(opened: OpenedClip) -> tuple[Head | None, Mcz]:
     """Give the head with all frames, and the file that has the chunks."""
     head = opened.mcz.head
-    if head is None or not opened.runs:
+    if head is None or not (opened.runs or opened.dependent):
         return head, opened.mcz
     other = opened.whole_source()
-    if other is not None:
+    if other is not None and not other.dependent:
         return inherited(opened, other), other.mcz
     streams = {
         stream.name: Stream(opened.rows(index).values, stream.columns, stream.frame_time)

@@ -206,6 +206,31 @@ class Library(Reading):
         """
         return recompress(self._coder(codec, model), self._id(clip))
 
+    def recompress_together(
+        self, clips: Sequence[Which], codec: str | Codec
+    ) -> dict[str, tuple[int, int]]:
+        """Code clips anew by a codec of scope library, which predicts them from each other.
+
+        All is written in one transaction, or nothing. Clips of which chunks need frames of these
+        are coded anew, too. What is not motion, or was coded by a lossy codec, stays as it is.
+
+        Returns
+        -------
+        dict
+            By name, the bytes of the chunks of each clip before and afterwards.
+
+        Raises
+        ------
+        UnsupportedError
+            When what the codec needs to find patterns is not installed.
+
+        """
+        from mocapress.library.together import recompress_together
+
+        done = recompress_together(self._coder(codec, None), [self._id(clip) for clip in clips])
+        with self.db.reading() as connection:
+            return {by_id(self, connection, clip).name: sizes for clip, sizes in done.items()}
+
     def label(self, clip: Which, *labels: str, remove: Sequence[str] = ()) -> None:
         """Give a clip labels, and take others away."""
         number = self._id(clip)

@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 
 from mocapress.api.opening import Opened, Rows
-from mocapress.codecs import Model
+from mocapress.codecs import Model, Others
 from mocapress.container import Damage, Head
 from mocapress.container.limits import most_values
 from mocapress.errors import CorruptError
 from mocapress.library.database import Database
+from mocapress.library.needs import Ancestry, needed_rows
 from mocapress.library.rows import RUN_COLUMNS, Facts, Run
 from mocapress.library.stored import StoredMcz
 from mocapress.models import Place, load_model
@@ -27,6 +28,8 @@ class OpenedClip(Opened):
         Where models may be that the library lacks.
     salvage
         Whether to go on where something is damaged, and list it in ``damage``.
+    ancestry
+        Of the clip of which chunks need this one.
 
     Raises
     ------
@@ -38,11 +41,18 @@ class OpenedClip(Opened):
     """
 
     def __init__(
-        self, db: Database, clip: int, models: Sequence[Place] = (), *, salvage: bool = False
+        self,
+        db: Database,
+        clip: int,
+        models: Sequence[Place] = (),
+        *,
+        salvage: bool = False,
+        ancestry: Ancestry | None = None,
     ) -> None:
         self.db, self.clip = db, clip
         self.stored = StoredMcz(db, clip, salvage=salvage)
         self._others: dict[int, OpenedClip] = {}
+        self.ancestry = Ancestry() if ancestry is None else ancestry
         self._given = models
         super().__init__(self.stored, models, salvage=salvage)
         names = {stream.model for stream in self.streams} - {b""}
@@ -102,7 +112,7 @@ class OpenedClip(Opened):
         sources = {run.source for run in self.runs}
         if len(sources) != 1:
             return None
-        other = self._other(*sources)
+        other = self.other(*sources)
         # Decoders go by the columns, too.
         alike = [stream.columns for stream in other.streams] == [
             stream.columns for stream in self.streams
@@ -159,7 +169,7 @@ class OpenedClip(Opened):
     def _rows_of(self, clip: int, stream: int, first: int, last: int) -> Rows:
         if clip == self.clip:
             return self.own_rows(stream, first, last)
-        other = self._other(clip)
+        other = self.other(clip)
         columns = len(self.streams[stream].columns)
         if (
             stream >= len(other.streams)
@@ -175,10 +185,22 @@ class OpenedClip(Opened):
         )
         return rows
 
-    def _other(self, clip: int) -> "OpenedClip":
+    def other(self, clip: int) -> "OpenedClip":
+        """Open another clip of the library, of which this one has or needs frames."""
         if clip not in self._others:
-            self._others[clip] = OpenedClip(self.db, clip, self._given, salvage=self.salvage)
+            self._others[clip] = OpenedClip(
+                self.db, clip, self._given, salvage=self.salvage, ancestry=self.ancestry
+            )
         return self._others[clip]
+
+    def needed(self, stream: int, digests: Sequence[bytes]) -> Others:
+        """Decode the frames of other chunks that chunks of a stream need."""
+        return needed_rows(self, stream, digests)
+
+    @property
+    def dependent(self) -> bool:
+        """Whether chunks of the clip need frames of others, of this clip or of another."""
+        return any(entry.dependent for entry in self.mcz.entries)
 
 
 def inherited(heir: OpenedClip, other: OpenedClip) -> Head:

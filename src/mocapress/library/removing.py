@@ -13,6 +13,7 @@ from mocapress.container.head import write_parts
 from mocapress.errors import ParameterError
 from mocapress.library import rows
 from mocapress.library.coding import Coder, shared, without_runs
+from mocapress.library.needs import needing
 from mocapress.library.opened import OpenedClip, inherited
 from mocapress.library.rows import Connection
 from mocapress.library.sharing import Values, anchors
@@ -28,8 +29,19 @@ def remove_clips(coder: Coder, clips: Sequence[int]) -> None:
         with tempfile.TemporaryFile() as spool:
             left = _dependents(connection, clips)
             kept = [_kept(coder, clip, spool) for clip in left]
+            # Of clips that are coded again frames are counted anew, so what needs them is lost.
+            orphans = [
+                OpenedClip(coder.db, clip, coder.models)
+                for clip in needing(connection, [*clips, *left])
+            ]
+            for opened in orphans:
+                for index in range(len(opened.streams)):
+                    np.save(spool, opened.own_rows(index).values, allow_pickle=False)
             for clip in clips:
                 connection.execute("DELETE FROM runs WHERE source = ? OR clip = ?", (clip, clip))
+            for opened in orphans:
+                for table in ("chunks", "needs"):
+                    connection.execute(f"DELETE FROM {table} WHERE clip = ?", [opened.clip])  # noqa: S608
             for clip in left:
                 rows.drop_contents(connection, clip)
             for clip in clips:
@@ -38,6 +50,10 @@ def remove_clips(coder: Coder, clips: Sequence[int]) -> None:
             for opened in kept:
                 values = [np.load(spool, allow_pickle=False) for _ in opened.streams]
                 _code_again(connection, coder, opened, _clip(opened, values))
+            for opened in orphans:
+                values = [np.load(spool, allow_pickle=False) for _ in opened.streams]
+                made = _coded(_clip(opened, values), opened.codec(), opened.model())
+                store(connection, opened.clip, made, opened.model())
 
 
 def recompress(coder: Coder, clip: int) -> tuple[int, int]:
@@ -65,16 +81,21 @@ def recompress(coder: Coder, clip: int) -> tuple[int, int]:
                 "a lossy clip stays as it is", file=opened.facts.name, expected="a lossless one"
             )
         before = [entry.end - entry.begin for entry in opened.mcz.entries]
-        own = [opened.own_rows(index).values for index in range(len(opened.streams))]
-        made = _coded(_clip(opened, own), coder.codec, coder.model)
+        made = _coded(own_clip(opened), coder.codec, coder.model)
         seen = opened.facts.head
     with coder.db.writing() as connection:
         found = rows.read_clip(connection, clip)
         if found is None or found[0].head != seen:  # somebody was quicker
             return sum(before), sum(before)
-        connection.execute("DELETE FROM chunks WHERE clip = ?", [clip])
-        _store(connection, clip, made, coder.model)
+        for table in ("chunks", "needs"):
+            connection.execute(f"DELETE FROM {table} WHERE clip = ?", [clip])  # noqa: S608
+        store(connection, clip, made, coder.model)
     return sum(before), sum(entry.end - entry.begin for entry in made.entries)
+
+
+def own_clip(opened: OpenedClip) -> Clip:
+    """Give the frames that a clip has in chunks of its own."""
+    return _clip(opened, [opened.own_rows(index).values for index in range(len(opened.streams))])
 
 
 def _clip(opened: OpenedClip, values: Sequence[Values]) -> Clip:
@@ -93,7 +114,7 @@ def _coded(clip: Clip, codec: Codec, model: Model | None) -> Mcz:
     return open_mcz(Source(compress_clip(clip, codec, model=model).blob))
 
 
-def _store(connection: Connection, clip: int, made: Mcz, model: Model | None) -> None:
+def store(connection: Connection, clip: int, made: Mcz, model: Model | None) -> None:
     """Put a new head and new chunks in the place of those of a clip."""
     found = rows.read_clip(connection, clip)
     assert found is not None
@@ -121,7 +142,13 @@ def _hand_over(connection: Connection, coder: Coder, clip: int, removed: Sequenc
         facts = heir.facts._replace(head=write_parts(head)[1], codec=head.streams[0].codec.id)
         rows.update_clip(connection, other, facts)
         connection.execute("DELETE FROM runs WHERE clip = ?", [other])
-        for table, column in (("chunks", "clip"), ("anchors", "clip"), ("runs", "source")):
+        for table, column in (
+            ("chunks", "clip"),
+            ("needs", "clip"),
+            ("needs", "source"),
+            ("anchors", "clip"),
+            ("runs", "source"),
+        ):
             connection.execute(
                 f"UPDATE {table} SET {column} = ? WHERE {column} = ?",  # noqa: S608
                 (other, clip),
@@ -165,7 +192,7 @@ def _code_again(connection: Connection, coder: Coder, opened: OpenedClip, clip: 
     found = coder.known.candidates(connection, opened.facts.sha256, anchors(clip.values))
     runs = [*shared(coder.db, clip, found, coder.models)]
     rest, model = without_runs(clip, runs), opened.model()
-    _store(connection, opened.clip, _coded(rest, opened.codec(), model), model)
+    store(connection, opened.clip, _coded(rest, opened.codec(), model), model)
     rows.insert_runs(connection, opened.clip, runs)
     if rest.values.size:
         hashes = anchors(rest.values)

@@ -231,7 +231,7 @@ def insert_anchors(connection: Connection, clip: int, hashes: NDArray[np.uint32]
 
 def drop_contents(connection: Connection, clip: int) -> None:
     """Delete what a clip has in chunks and runs, and by what it is found."""
-    for table in ("chunks", "runs", "anchors"):
+    for table in ("chunks", "runs", "needs", "anchors"):
         connection.execute(f"DELETE FROM {table} WHERE clip = ?", [clip])  # noqa: S608
 
 

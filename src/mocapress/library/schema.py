@@ -72,7 +72,15 @@ def _statements(text: str) -> list[str]:
     return [part.strip() for part in text.split(";\n") if part.strip()]
 
 
-MIGRATIONS = [Migration("create", _statements(_TABLES))]
+_NEEDS = """
+CREATE TABLE needs(clip INTEGER NOT NULL REFERENCES clips, digest BLOB NOT NULL,
+    stream INTEGER NOT NULL, source INTEGER NOT NULL REFERENCES clips,
+    source_first INTEGER NOT NULL, frames INTEGER NOT NULL,
+    PRIMARY KEY(clip, digest)) STRICT, WITHOUT ROWID;
+CREATE INDEX needs_by_source ON needs(source);
+"""
+
+MIGRATIONS = [Migration("create", _statements(_TABLES)), Migration("needs", _statements(_NEEDS))]
 """Version n of the schema is what the first n of them make."""
 
 

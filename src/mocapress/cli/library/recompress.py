@@ -25,20 +25,31 @@ def recompress(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Code clips anew, each in a transaction; their files and numbers stay the same."""
+    """Code clips anew; their files and numbers stay the same.
+
+    Each clip is a transaction of its own. A codec that predicts clips from each other, as mrpa
+    does, codes them all in one.
+    """
     from mocapress.cli.batch import run
     from mocapress.cli.library.codec import chosen_codec
     from mocapress.cli.models import open_models
+    from mocapress.codecs import Scope
 
     made = chosen_codec(codec, level)
     with opened(file, "a", debug=debug, models=open_models(models or [])) as library:
+        clips = chosen(library, patterns)
+        together: dict[str, tuple[int, int]] = {}
+        if made.can.scope is Scope.LIBRARY:
+            together = library.recompress_together(clips, made)
+            clips = [library[name] for name in together]
 
         def work(job: "Job") -> dict[str, Any]:
-            before, after = library.recompress(str(job.source), made)
+            name = str(job.source)
+            before, after = together.get(name) or library.recompress(name, made)
             return {"bytes_before": before, "bytes_after": after}
 
         run(
-            jobs_of(chosen(library, patterns)),
+            jobs_of(clips),
             work,
             threads=jobs,
             json=json,

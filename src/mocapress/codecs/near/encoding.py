@@ -17,8 +17,13 @@ _SCALE_OF_MEAN = 2.5
 """Where the search for a mean begins; 5.5 at coarse ones."""
 _TRIES = 5
 _NEAR_ENOUGH = 0.01
+_INNER, _OUTER = 1.05, 1.5
+"""Means of joints may be so many times that of all; of those without further joints, the latter."""
+_HASTE = 1.5
 _SAMPLE = 256
 """Frames by which channels are weighed."""
+_COARSE = 4e-3
+"""Of the figure's size: at coarser scales long spans are worth more than early predictions."""
 _RATE = 0.12
 """What a bit is worth, in squares of the scale."""
 
@@ -39,6 +44,7 @@ class Encoder:
         self.measure = Measure(goal, skeleton, stream.columns)
         self.value_most = np.full(stream.channels, max_error)
         self.weights = np.ones(self.measure.points)
+        self.shares = self._shares(skeleton)
         self.exponents = self._levers()
         self.joints = joints_of(stream.columns, skeleton)
 
@@ -81,6 +87,20 @@ class Encoder:
         exponents: NDArray[np.int64] = np.rint(-levers * STEPS_PER_OCTAVE / COARSE).astype(np.int64)
         return exponents * COARSE
 
+    def _shares(self, skeleton: Skeleton | None) -> NDArray[np.float64]:
+        """Give by how much the mean of each point may be above that of all, (P,)."""
+        shares = np.full(self.measure.points, inf)
+        if self.goal.in_space and skeleton is not None:
+            inner = {joint.parent for joint in skeleton.joints}
+            shares[:] = [_INNER if j in inner else _OUTER for j in range(len(shares))]
+        return shares
+
+    def _weigh(self, errors: NDArray[np.float64]) -> None:
+        """Make errors of joints costlier whose mean is above its share."""
+        means = errors.mean(axis=0)
+        above = np.maximum(means / (self.shares * max(means.mean(), 1e-300)), 1.0)
+        self.weights *= above**_HASTE
+
     def _steps(self, scale: float) -> list[int]:
         base = round(log2(scale) * STEPS_PER_OCTAVE)
         low = -_MOST_STEP + (base + _MOST_STEP) % COARSE
@@ -95,7 +115,8 @@ class Encoder:
     def _header(self, scale: float, errors: tuple[float, float]) -> bytes:
         knot, one = self._knot(scale)
         steps = self._steps(scale)
-        return pack_header(self.goal.in_space, errors, knot, one, steps, self.joints)
+        early = scale / self.goal.size < _COARSE
+        return pack_header(self.goal.in_space, early, errors, knot, one, steps, self.joints)
 
     def _payload(self, first: int, scale: float, most: float) -> tuple[bytes, NDArray[np.float64]]:
         payload, _, errors = _core.near_encode(
@@ -123,7 +144,8 @@ class Encoder:
         """Find the scale at which the mean error is the goal's."""
         scale, tried = self.goal.mean * _SCALE_OF_MEAN, list[tuple[float, float]]()
         for _ in range(_TRIES):
-            mean = float(self._chunks(scale, inf)[1].mean())
+            errors = self._chunks(scale, inf)[1]
+            mean = float(errors.mean())
             if mean <= 0:
                 return scale
             off = log(mean / self.goal.mean)
@@ -133,6 +155,7 @@ class Encoder:
             slope = 1.0
             if len(tried) > 1 and tried[-2][1] != off:
                 slope = (tried[-1][0] - tried[-2][0]) / (off - tried[-2][1])
+            self._weigh(errors)
             move = -off * min(max(slope, 0.4), 2.5)
             scale *= float(np.exp(min(max(move, -2.0), 2.0)))
         best = min(tried, key=lambda one: abs(one[1]))

@@ -45,6 +45,7 @@ def joints_of(columns: Sequence[Column], skeleton: Skeleton | None) -> Joints:
 
 def pack_header(
     in_space: bool,
+    early: bool,
     errors: tuple[float, float],
     knot: int,
     first: int,
@@ -57,6 +58,8 @@ def pack_header(
     ----------
     in_space
         Whether errors are those of joints.
+    early
+        Whether the first spans are short.
     errors
         Mean and largest; they are rounded up to three digits.
     knot, first
@@ -69,7 +72,7 @@ def pack_header(
     """
     writer = Writer()
     writer.numbers([_rounded_up(error) for error in errors])
-    writer.integer(1 if in_space else 0)
+    writer.integer((1 if in_space else 0) + (0 if early else 2))
     writer.integer(knot - 1)
     writer.integer(first - 1)
     base = steps[0] if steps else 0
@@ -90,7 +93,7 @@ def unpack_errors(header: bytes) -> tuple[bool, float, float]:
     """
     reader = Reader(header, "header of near")
     mean, largest = reader.numbers(2)
-    return reader.integer(1) == 1, mean, largest
+    return reader.integer(3) % 2 == 1, mean, largest
 
 
 def _rounded_up(error: float) -> float:
