@@ -404,11 +404,34 @@ def near_encode(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], 
 def near_decode(header: bytes, payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
     """Fill ``values`` from a chunk; ValueError where it is none."""
 
-def code_by_products(turns: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], importance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], most: int, tolerance: float, sorted: bool) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
+def qssd_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, model: bytes, most: int, rounding: float, rest_rounding: float, max_error: float) -> bytes:
+    """Code rows of values as a chunk: core/qssd_learning/encoder.hpp."""
+
+def qssd_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], header: bytes, model: bytes) -> None:
+    """Fill ``values`` from a chunk; ValueError where it is none."""
+
+def qssd_symbols(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, model: bytes, most: int, rounding: float, rest_rounding: float) -> Annotated[NDArray[numpy.int64], dict(shape=(None, None))]:
+    """Give what rows are coded as, (samples, atoms + columns)."""
+
+def qssd_kinds(frames: int, header: bytes, columns: int, model: bytes) -> Annotated[NDArray[numpy.uint64], dict(shape=(None,))]:
+    """Give the kinds of the stages of the samples."""
+
+def qssd_turns(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None))]:
+    """Give the turns of joints, (F, J, 4)."""
+
+def qssd_displacements(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None))]:
+    """Give what frames turn by from their predictions, (samples, J, 4)."""
+
+def code_by_products(turns: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], importance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], most: int, tolerance: float, least: float, sorted: bool) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
     """
     Code frames, (F, J, 4), by atoms, (K, J, 3): Algorithm 2.
 
     Gives each frame's atoms, (F, most), -1 behind the last, and their weights.
+    """
+
+def quantize_products(turns: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], importance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], atoms: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu')], weights: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], step: float, rounding: float) -> None:
+    """
+    Make ``weights`` multiples of ``step``, each the best beside the others, in place.
     """
 
 def learn_products(turns: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], importance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], atoms: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu')], weights: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
