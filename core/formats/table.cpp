@@ -195,9 +195,13 @@ void TableMatcher::match(std::string_view text, std::vector<double>& values) {
       const TableColumn& column = columns_[c];
       std::string_view expected = column.text;
       if (column.kind == TableKind::texts) {
-        // A carriage return is no line feed: no cell has any.
         if (rows > 0) texts[c] += '\n';
-        texts[c] += cells[c];
+        // Where lines end otherwise, a cell may hold a line feed, which would end its text.
+        if (cells[c].find('\n') == std::string_view::npos) {
+          texts[c] += cells[c];
+        } else {
+          others[c].add(rows, cells[c]);
+        }
         continue;
       }
       if (column.kind == TableKind::series) {
