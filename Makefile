@@ -23,11 +23,14 @@ demo-runs: $(VENV)/.installed
 	@mkdir -p build
 	@$(MAKE) --no-print-directory demo >build/demo.log 2>&1 || { cat build/demo.log; exit 1; }
 
-# What takes too long for every test run: 1,000 kills at random moments, then one before every call.
+# What takes too long for every test run: 1,000 kills at random moments, then one before every call;
+# 10,000 mutants of each codec and format; a table of 10 GB.
 long: $(VENV)/.built corpus
 	$(BIN)/python tests/campaigns/kills.py --runs 1000 \
 	    $(if $(wildcard corpus/.version),--corpus corpus) --every-call
 	$(BIN)/python tests/campaigns/library_kills.py --runs 300
+	$(BIN)/python tests/campaigns/mutants.py --runs 10000
+	$(BIN)/python tests/campaigns/large_inputs.py
 	$(MAKE) sanitize FUZZ_RUNS=1000000
 
 check: $(VENV)/.built
@@ -99,7 +102,7 @@ compilers:
 
 # The core for the page, in modules of which it carries those that it needs; viewer/wasm/ keeps what
 # this builds.
-decoders := app diffma exact mrpa near
+decoders := app diffma exact mrpa near qssd
 wasm_modules := $(patsubst %,build/wasm/%.wasm,$(decoders) formats kinematics)
 ZIG := $(BIN)/python -m ziglang c++ -target wasm32-wasi -std=c++20 -ffp-contract=off -fno-math-errno -fno-exceptions \
     -fno-rtti -msimd128 -flto -Wall -Wextra -Icore -Wl,--strip-all

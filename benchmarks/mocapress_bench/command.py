@@ -6,6 +6,7 @@ from mocapress_bench.demo import demo
 from mocapress_bench.diffma_command import diffma
 from mocapress_bench.lossless_command import lossless
 from mocapress_bench.mrpa_command import mrpa
+from mocapress_bench.qssd_command import qssd
 
 app = typer.Typer(
     help="Measure codecs on clips.",
@@ -13,5 +14,5 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (lossless, diffma, mrpa, demo):
+for command in (lossless, diffma, mrpa, qssd, demo):
     app.command()(command)

@@ -11,6 +11,13 @@ namespace {
 
 constexpr std::size_t kMostShown = 16;  // bytes in a message
 
+// A frame number so many later; without end, around it goes.
+std::int64_t moved(std::int64_t counter, std::uint64_t by) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(counter) + by);
+}
+
+}  // namespace
+
 void note(ColumnStatistics& column, const NumberShape& shape) {
   if (shape.exponent_digits > 0) {
     column.exponent_digits = column.exponent_digits == 0
@@ -29,13 +36,6 @@ void note(ColumnStatistics& column, const NumberShape& shape) {
   column.leading_zero |= shape.leading_zero;
   column.end_point |= shape.end_point;
 }
-
-// A frame number so many later; without end, around it goes.
-std::int64_t moved(std::int64_t counter, std::uint64_t by) {
-  return static_cast<std::int64_t>(static_cast<std::uint64_t>(counter) + by);
-}
-
-}  // namespace
 
 void append_row(Body& body, const Row& row, std::uint64_t begin, bool counted) {
   body.values.insert(body.values.end(), row.values.begin(), row.values.end());

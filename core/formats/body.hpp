@@ -30,6 +30,9 @@ struct ColumnStatistics {
   bool operator==(const ColumnStatistics&) const = default;
 };
 
+// Adds a number of a column.
+void note(ColumnStatistics& column, const NumberShape& shape);
+
 struct Body {
   std::size_t columns = 0;
   std::vector<double> values;          // rows x columns

@@ -175,7 +175,7 @@ struct Candidate {
 
 }  // namespace
 
-C3dLayout c3d_layout(ByteView data) {
+C3dLayout c3d_layout(ByteView data, std::uint64_t file_size) {
   C3dLayout layout;
   if (data.size() < kBlock) return layout;
   const std::uint64_t section = data[0] > 0 ? (data[0] - 1) * kBlock : 0;
@@ -219,11 +219,10 @@ C3dLayout c3d_layout(ByteView data) {
                0.5 * roughness(bytes, layout.floats, best->frames);
   };
   for (const std::uint64_t start : starts) {
-    if (start < 2 || (start - 1) * kBlock >= data.size()) continue;
+    if (start < 2 || (start - 1) * kBlock >= file_size) continue;
     const std::uint64_t begin = (start - 1) * kBlock;
     const bool before_rotations = rotations > 0 && rotation_begin > begin;
-    const std::uint64_t end =
-        before_rotations ? std::min<std::uint64_t>(rotation_begin, data.size()) : data.size();
+    const std::uint64_t end = before_rotations ? std::min(rotation_begin, file_size) : file_size;
     for (const std::uint64_t of_points : points) {
       for (const std::uint64_t analog : analogs) {
         const std::uint64_t numbers = kInPoint * of_points + analog;
@@ -261,8 +260,8 @@ C3dLayout c3d_layout(ByteView data) {
   const std::uint64_t after =
       best ? layout.frames.begin + layout.frames.count * layout.frames.numbers * size : kBlock;
   if (rotations > 0 && layout.floats && count > 0 && rotation_begin >= after &&
-      rotation_begin < data.size() &&
-      count <= (data.size() - rotation_begin) / (rotations * kInRotation * 4)) {
+      rotation_begin < file_size &&
+      count <= (file_size - rotation_begin) / (rotations * kInRotation * 4)) {
     layout.rotations = {rotation_begin, count, rotations * kInRotation};
   }
   return layout;

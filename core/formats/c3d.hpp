@@ -45,6 +45,7 @@ struct C3dLayout {
   std::vector<C3dParameter> parameters;
 };
 
-C3dLayout c3d_layout(ByteView data);
+// Of a file of so many bytes, of which `data` is the beginning.
+C3dLayout c3d_layout(ByteView data, std::uint64_t file_size);
 
 }  // namespace mocapress

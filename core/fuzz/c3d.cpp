@@ -17,7 +17,7 @@ bool inside(const C3dFrames& frames, std::size_t size_of_number, std::size_t siz
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const C3dLayout layout = c3d_layout({data, size});
+  const C3dLayout layout = c3d_layout({data, size}, size);
   const std::size_t number = layout.floats ? 4 : 2;
   if (!inside(layout.frames, number, size) || !inside(layout.rotations, number, size)) std::abort();
   if (layout.frames.count > 0 && layout.frames.numbers != 4 * layout.points + layout.analog)

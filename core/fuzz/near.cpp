@@ -50,10 +50,10 @@ void round_trip(Input input, std::size_t channels) {
   const bool any_bits = input.below(2) != 0;
   std::vector<double> values;
   if (any_bits) {
-    values = input.numbers(1 << 12);
+    values = input.numbers(1 << 10);
   } else {
     for (const std::uint8_t byte :
-         input.rest().first(std::min<std::size_t>(input.rest().size(), 1 << 12)))
+         input.rest().first(std::min<std::size_t>(input.rest().size(), 1 << 10)))
       values.push_back((byte - 128) / 7.0);
   }
   const std::size_t frames = channels > 0 ? values.size() / channels : 0;
@@ -79,7 +79,7 @@ void round_trip(Input input, std::size_t channels) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Input input({data, size});
-  const bool encodes = input.below(2) != 0;
+  const bool encodes = input.below(16) == 0;  // which takes a hundred times as long
   const std::size_t channels = input.below(9);
   if (encodes) {
     round_trip(input, channels);

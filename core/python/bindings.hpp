@@ -58,12 +58,15 @@ Given<Element> give(std::vector<Element> data) {
 void bind_c3d(nb::module_& module);
 void bind_formats(nb::module_& module);
 void bind_motion(nb::module_& module);
+void bind_record(nb::module_& module);
 void bind_rows(nb::module_& module);
+void bind_table(nb::module_& module);
 void bind_app(nb::module_& module);
 void bind_exact(nb::module_& module);
 void bind_diffma(nb::module_& module);
 void bind_mrpa(nb::module_& module);
 void bind_near(nb::module_& module);
+void bind_qssd(nb::module_& module);
 void bind_qssd_learning(nb::module_& module);
 
 }  // namespace mocapress

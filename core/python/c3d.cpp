@@ -15,8 +15,8 @@ using Parameter = std::tuple<int, bool, nb::bytes, int, nb::bytes, std::uint64_t
 using Found = std::tuple<int, bool, std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t,
                          Frames, Frames, std::vector<Parameter>>;
 
-Found layout(const nb::bytes& data) {
-  const C3dLayout found = c3d_layout(view(data));
+Found layout(const nb::bytes& data, std::uint64_t size) {
+  const C3dLayout found = c3d_layout(view(data), size);
   const auto frames = [](const C3dFrames& own) {
     return Frames(own.begin, own.count, own.numbers);
   };
@@ -41,9 +41,10 @@ Found layout(const nb::bytes& data) {
 
 void bind_c3d(nb::module_& module) {
   module.def(
-      "c3d_layout", &layout, nb::arg("data"),
-      "Give processor, whether numbers are floats, announced frames, points, analog numbers\n"
-      "in a frame, samples of each channel in it; begin, count and numbers of the frames\n"
+      "c3d_layout", &layout, nb::arg("data"), nb::arg("size"),
+      "Of a file of so many bytes, which begins with these, give processor, whether numbers\n"
+      "are floats, announced frames, points, analog numbers in a frame, samples of each channel\n"
+      "in it; begin, count and numbers of the frames\n"
       "and of the rotations; and the parameters: see core/formats/c3d.hpp.");
 }
 

@@ -6,11 +6,14 @@ NB_MODULE(_core, module) {
   mocapress::bind_c3d(module);
   mocapress::bind_formats(module);
   mocapress::bind_motion(module);
+  mocapress::bind_record(module);
   mocapress::bind_rows(module);
+  mocapress::bind_table(module);
   mocapress::bind_app(module);
   mocapress::bind_exact(module);
   mocapress::bind_diffma(module);
   mocapress::bind_mrpa(module);
   mocapress::bind_near(module);
+  mocapress::bind_qssd(module);
   mocapress::bind_qssd_learning(module);
 }

@@ -51,15 +51,27 @@ Picks picks(std::size_t frames, std::size_t most, const Work& work) {
 
 Picks code_by_products(const Input<double, 3>& turns, const Input<double, 1>& importance,
                        const Input<double, 3>& dictionary, std::size_t most, double tolerance,
-                       bool sorted) {
+                       double least, bool sorted) {
   const auto frames = frames_of(turns, importance);
   check(dictionary.shape(1) == frames.joints && dictionary.shape(2) == 3, "atoms of other joints");
   return picks(frames.frames, most, [&](const qssd::Weights& weights) {
     // The kernel only reads them.
     const qssd::Dictionary atoms{const_cast<double*>(dictionary.data()), dictionary.shape(0)};
-    qssd::code_by_products(frames, atoms, weights, tolerance,
+    qssd::code_by_products(frames, atoms, weights, {tolerance, least},
                            sorted ? qssd::Order::sort : qssd::Order::stop);
   });
+}
+
+void quantize_products(const Input<double, 3>& turns, const Input<double, 1>& importance,
+                       const Input<double, 3>& dictionary, const Output<std::int32_t, 2>& atoms,
+                       const Output<double, 2>& weights, double step, double rounding) {
+  const auto frames = frames_of(turns, importance);
+  check(dictionary.shape(1) == frames.joints && dictionary.shape(2) == 3, "atoms of other joints");
+  check_picks(atoms, weights, frames.frames, dictionary.shape(0));
+  check(step > 0, "a step that is no number above 0");
+  const nb::gil_scoped_release release;
+  qssd::quantize_products(frames, {const_cast<double*>(dictionary.data()), dictionary.shape(0)},
+                          {atoms.data(), weights.data(), atoms.shape(1)}, step, rounding);
 }
 
 void learn_products(const Input<double, 3>& turns, const Input<double, 1>& importance,
@@ -111,9 +123,14 @@ void learn_sums(const Input<double, 2>& rows, const Output<double, 2>& dictionar
 
 void bind_qssd_learning(nb::module_& module) {
   module.def("code_by_products", &code_by_products, nb::arg("turns"), nb::arg("importance"),
-             nb::arg("dictionary"), nb::arg("most"), nb::arg("tolerance"), nb::arg("sorted"),
+             nb::arg("dictionary"), nb::arg("most"), nb::arg("tolerance"), nb::arg("least"),
+             nb::arg("sorted"),
              "Code frames, (F, J, 4), by atoms, (K, J, 3): Algorithm 2.\n\n"
              "Gives each frame's atoms, (F, most), -1 behind the last, and their weights.");
+  module.def("quantize_products", &quantize_products, nb::arg("turns"), nb::arg("importance"),
+             nb::arg("dictionary"), nb::arg("atoms").noconvert(), nb::arg("weights").noconvert(),
+             nb::arg("step"), nb::arg("rounding"),
+             "Make ``weights`` multiples of ``step``, each the best beside the others, in place.");
   module.def("learn_products", &learn_products, nb::arg("turns"), nb::arg("importance"),
              nb::arg("dictionary").noconvert(), nb::arg("atoms").noconvert(),
              nb::arg("weights").noconvert(),

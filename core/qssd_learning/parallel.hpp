@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#ifndef __wasm__
 #include <thread>
+#endif
 #include <vector>
 
 namespace mocapress::qssd {
@@ -11,6 +13,10 @@ namespace mocapress::qssd {
 // Calls work(first, last) for slices of [0, count); none of fewer than `least`.
 template <class Work>
 void in_parallel(std::size_t count, std::size_t least, const Work& work) {
+#ifdef __wasm__
+  static_cast<void>(least);  // no threads there
+  work(0, count);
+#else
   const std::size_t most = std::max<std::size_t>(std::thread::hardware_concurrency(), 1);
   const std::size_t slices =
       std::clamp<std::size_t>(count / std::max<std::size_t>(least, 1), 1, most);
@@ -20,6 +26,7 @@ void in_parallel(std::size_t count, std::size_t least, const Work& work) {
   }
   work(0, count / slices);
   for (auto& other : others) other.join();
+#endif
 }
 
 }  // namespace mocapress::qssd

@@ -18,7 +18,8 @@ namespace mocapress::qssd {
 namespace {
 
 constexpr int kMostSweeps = 100;
-constexpr double kSettled = 1e-6;  // radians
+constexpr int kMostRoundings = 8;
+constexpr double kSettled = 1e-4;  // of a frame's largest weight
 constexpr double kNothing = 1e-12;
 constexpr std::size_t kLeastFrames = 64;  // for which a thread is worth its start
 
@@ -111,23 +112,19 @@ MOCAPRESS_IN_PLACE double best_weight(const Turns* left, const Part* parts, cons
 // One frame while it is coded.
 struct Bench {
   Aligned<Turns> left;    // what the atoms so far leave
-  Aligned<Turns> front;   // (the atoms before one)^-1 Y
   Aligned<Turns> behind;  // the products of the atoms behind each
   Aligned<Turns> trial;
   Aligned<Arcs> logs;
 
   explicit Bench(std::size_t blocks)
-      : left(blocks),
-        front(blocks),
-        behind((kMostAtoms + 1) * blocks),
-        trial(blocks),
-        logs(blocks) {}
+      : left(blocks), behind((kMostAtoms + 1) * blocks), trial(blocks), logs(blocks) {}
 };
 
-// One sweep of the block coordinate descent; gives the largest move. With `kept` in the limits that
-// the order of selection leaves.
+// One sweep of the block coordinate descent: each weight becomes what `limit` makes of the best
+// beside the others. Gives the largest move.
+template <class Limit>
 MOCAPRESS_IN_PLACE double sweep(const Turns* frame, const Atoms& atoms, const Picked& picked,
-                                std::size_t count, bool kept, Bench& bench) {
+                                std::size_t count, Bench& bench, const Limit& limit) {
   const std::size_t blocks = atoms.blocks;
   Turns* const behind = bench.behind.data();
   for (std::size_t b = 0; b < blocks; ++b) behind[(count - 1) * blocks + b] = kNoTurn;
@@ -138,33 +135,45 @@ MOCAPRESS_IN_PLACE double sweep(const Turns* frame, const Atoms& atoms, const Pi
           product(power(parts[b], picked.weights[p]), behind[p * blocks + b]);
     }
   }
-  for (std::size_t b = 0; b < blocks; ++b) bench.front[b] = frame[b];
+  for (std::size_t b = 0; b < blocks; ++b) bench.left[b] = frame[b];
   double moved = 0;
   for (std::size_t p = 0; p < count; ++p) {
     const Part* parts = atoms.parts.data() + picked.atoms[p] * blocks;
     for (std::size_t b = 0; b < blocks; ++b) {
-      bench.trial[b] = product(bench.front[b], conjugate(behind[p * blocks + b]));
+      bench.trial[b] = product(bench.left[b], conjugate(behind[p * blocks + b]));
     }
-    double weight = best_weight(bench.trial.data(), parts, atoms.squares.data(), blocks);
-    if (kept) {
-      double magnitude = std::fabs(weight);
-      if (p > 0) magnitude = std::min(magnitude, std::fabs(picked.weights[p - 1]));
-      if (p + 1 < count) magnitude = std::max(magnitude, std::fabs(picked.weights[p + 1]));
-      weight = weight < 0 ? -magnitude : magnitude;
-    }
+    const double best = best_weight(bench.trial.data(), parts, atoms.squares.data(), blocks);
+    const double weight = limit(p, best);
     moved = std::max(moved, std::fabs(weight - picked.weights[p]));
     picked.weights[p] = weight;
     for (std::size_t b = 0; b < blocks; ++b) {
-      bench.front[b] = product(conjugate(power(parts[b], weight)), bench.front[b]);
+      bench.left[b] = product(conjugate(power(parts[b], weight)), bench.left[b]);
     }
   }
-  for (std::size_t b = 0; b < blocks; ++b) bench.left[b] = bench.front[b];
   return moved;
 }
 
+// Within the limits that the order of selection leaves.
+MOCAPRESS_IN_PLACE double sweep_in_order(const Turns* frame, const Atoms& atoms,
+                                         const Picked& picked, std::size_t count, Bench& bench) {
+  return sweep(frame, atoms, picked, count, bench, [&](std::size_t p, double weight) {
+    double magnitude = std::fabs(weight);
+    if (p > 0) magnitude = std::min(magnitude, std::fabs(picked.weights[p - 1]));
+    if (p + 1 < count) magnitude = std::max(magnitude, std::fabs(picked.weights[p + 1]));
+    return weight < 0 ? -magnitude : magnitude;
+  });
+}
+
+MOCAPRESS_IN_PLACE double sweep_freely(const Turns* frame, const Atoms& atoms, const Picked& picked,
+                                       std::size_t count, Bench& bench) {
+  return sweep(frame, atoms, picked, count, bench,
+               [](std::size_t, double weight) { return weight; });
+}
+
 // The atom with the largest projection of what is left (line 4 and 5), -1 where nothing is left.
-MOCAPRESS_IN_PLACE std::int32_t best_atom(const Atoms& atoms, std::size_t count, double tolerance,
-                                          const Picked& picked, std::size_t chosen, Bench& bench) {
+MOCAPRESS_IN_PLACE std::int32_t best_atom(const Atoms& atoms, std::size_t count,
+                                          const Enough& enough, const Picked& picked,
+                                          std::size_t chosen, Bench& bench) {
   const std::size_t blocks = atoms.blocks;
   Block squares{};
   for (std::size_t b = 0; b < blocks; ++b) {
@@ -173,9 +182,9 @@ MOCAPRESS_IN_PLACE std::int32_t best_atom(const Atoms& atoms, std::size_t count,
     squares += weight * dot(log, log);
     bench.logs[b] = {weight * log.x, weight * log.y, weight * log.z};
   }
-  if (total(squares) <= tolerance * tolerance) return -1;
+  if (total(squares) <= enough.tolerance * enough.tolerance) return -1;
   std::int32_t best = -1;
-  double most = kNothing;
+  double most = std::max(kNothing, enough.least);
   for (std::size_t k = 0; k < count; ++k) {
     const Arcs* log = atoms.logs.data() + k * blocks;
     Block sum{};
@@ -192,7 +201,7 @@ MOCAPRESS_IN_PLACE std::int32_t best_atom(const Atoms& atoms, std::size_t count,
 
 MOCAPRESS_VECTOR_CLONES
 void code_slice(const Turns* turns, std::size_t first, std::size_t last, const Atoms& atoms,
-                std::size_t atom_count, const Weights& weights, double tolerance, Order order) {
+                std::size_t atom_count, const Weights& weights, const Enough& enough, Order order) {
   const std::size_t blocks = atoms.blocks;
   Bench bench(blocks);
   for (std::size_t f = first; f < last; ++f) {
@@ -201,7 +210,7 @@ void code_slice(const Turns* turns, std::size_t first, std::size_t last, const A
                            {weights.weights + f * weights.most, weights.most}};
     for (std::size_t b = 0; b < blocks; ++b) bench.left[b] = frame[b];
     for (std::size_t count = 0; count < weights.most;) {
-      const std::int32_t best = best_atom(atoms, atom_count, tolerance, picked, count, bench);
+      const std::int32_t best = best_atom(atoms, atom_count, enough, picked, count, bench);
       if (best < 0) break;
       const Part* parts = atoms.parts.data() + best * blocks;
       double weight = best_weight(bench.left.data(), parts, atoms.squares.data(), blocks);
@@ -213,12 +222,45 @@ void code_slice(const Turns* turns, std::size_t first, std::size_t last, const A
       picked.weights[count++] = weight;
       bool moved = !kept && put_in_order(picked, count);
       for (int round = 0; round < kMostSweeps; ++round) {
-        const double move = sweep(frame, atoms, picked, count, kept, bench);
+        const double move = kept ? sweep_in_order(frame, atoms, picked, count, bench)
+                                 : sweep_freely(frame, atoms, picked, count, bench);
         moved = !kept && put_in_order(picked, count);
-        if (!moved && move < kSettled) break;
+        if (!moved && move <= kSettled * std::fabs(picked.weights[0])) break;
       }
-      if (moved) sweep(frame, atoms, picked, count, true, bench);
+      if (moved) sweep_in_order(frame, atoms, picked, count, bench);
     }
+  }
+}
+
+// A multiple of `step`.
+MOCAPRESS_IN_PLACE double rounded(double weight, double step, double rounding) {
+  const double steps = std::floor(std::fabs(weight) / step + rounding);
+  return weight < 0 ? -steps * step : steps * step;
+}
+
+MOCAPRESS_VECTOR_CLONES
+void quantize_slice(const Turns* turns, std::size_t first, std::size_t last, const Atoms& atoms,
+                    const Weights& weights, double step, double rounding) {
+  const std::size_t blocks = atoms.blocks;
+  Bench bench(blocks);
+  for (std::size_t f = first; f < last; ++f) {
+    const Picked picked = {{weights.atoms + f * weights.most, weights.most},
+                           {weights.weights + f * weights.most, weights.most}};
+    const std::size_t chosen = picked.count();
+    for (std::size_t p = 0; p < chosen; ++p) {
+      picked.weights[p] = rounded(picked.weights[p], step, rounding);
+    }
+    put_in_order(picked, chosen);
+    std::size_t count = chosen;
+    for (int round = 0; round < kMostRoundings; ++round) {
+      while (count > 0 && picked.weights[count - 1] == 0) picked.atoms[--count] = -1;
+      if (count == 0) break;
+      const double move =
+          sweep(turns + f * blocks, atoms, picked, count, bench,
+                [&](std::size_t, double weight) { return rounded(weight, step, rounding); });
+      if (!put_in_order(picked, count) && move == 0) break;
+    }
+    while (count > 0 && picked.weights[count - 1] == 0) picked.atoms[--count] = -1;
   }
 }
 
@@ -300,11 +342,20 @@ void combine_slice(Turns* turns, std::size_t first, std::size_t last, const Atom
 }  // namespace
 
 void code_by_products(const Frames& frames, const Dictionary& dictionary, const Weights& weights,
-                      double tolerance, Order order) {
+                      const Enough& enough, Order order) {
   const Atoms atoms(dictionary, frames.joints, frames.importance);
   const Aligned<Turns> turns = blocks_of_turns(frames);
   in_parallel(frames.frames, kLeastFrames, [&](std::size_t first, std::size_t last) {
-    code_slice(turns.data(), first, last, atoms, dictionary.atoms, weights, tolerance, order);
+    code_slice(turns.data(), first, last, atoms, dictionary.atoms, weights, enough, order);
+  });
+}
+
+void quantize_products(const Frames& frames, const Dictionary& dictionary, const Weights& weights,
+                       double step, double rounding) {
+  const Atoms atoms(dictionary, frames.joints, frames.importance);
+  const Aligned<Turns> turns = blocks_of_turns(frames);
+  in_parallel(frames.frames, kLeastFrames, [&](std::size_t first, std::size_t last) {
+    quantize_slice(turns.data(), first, last, atoms, weights, step, rounding);
   });
 }
 

@@ -37,9 +37,21 @@ struct Weights {
   std::size_t most;
 };
 
-// Algorithm 2: until a frame has `most` atoms or what is left is shorter than `tolerance`.
+// When a frame has enough atoms, beside `most` of them.
+struct Enough {
+  double tolerance;  // what is left is no longer than this
+  double least;      // no atom has a larger projection of it
+};
+
+// Algorithm 2.
 void code_by_products(const Frames& frames, const Dictionary& dictionary, const Weights& weights,
-                      double tolerance, Order order);
+                      const Enough& enough, Order order);
+
+// Makes the weights multiples of `step`, each the best beside those of the other atoms; `rounding`
+// is what is added before the fraction is cut off, 1/2 for the nearest. Those that become 0 leave
+// their frames; the others stand in the order of their product.
+void quantize_products(const Frames& frames, const Dictionary& dictionary, const Weights& weights,
+                       double step, double rounding);
 
 // Algorithm 3: all atoms, one after the other, and their weights. Atoms that no frame uses stay.
 void learn_products(const Frames& frames, const Dictionary& dictionary, const Weights& weights);

@@ -189,7 +189,7 @@ extern "C" {
 // Finds how a C3D of this size, which stands in the space, is laid out.
 [[clang::export_name("c3d")]] const char* mocapress_c3d(std::size_t size) {
   Json json;
-  say(json, c3d_layout({reinterpret_cast<const std::uint8_t*>(space().data()), size}));
+  say(json, c3d_layout({reinterpret_cast<const std::uint8_t*>(space().data()), size}, size));
   said = json.printed();
   return said.data();
 }

@@ -7,10 +7,11 @@ import numpy
 from numpy.typing import NDArray
 
 
-def c3d_layout(data: bytes) -> tuple[int, bool, int, int, int, int, tuple[int, int, int], tuple[int, int, int], list[tuple[int, bool, bytes, int, bytes, int, int]]]:
+def c3d_layout(data: bytes, size: int) -> tuple[int, bool, int, int, int, int, tuple[int, int, int], tuple[int, int, int], list[tuple[int, bool, bytes, int, bytes, int, int]]]:
     """
-    Give processor, whether numbers are floats, announced frames, points, analog numbers
-    in a frame, samples of each channel in it; begin, count and numbers of the frames
+    Of a file of so many bytes, which begins with these, give processor, whether numbers
+    are floats, announced frames, points, analog numbers in a frame, samples of each channel
+    in it; begin, count and numbers of the frames
     and of the rotations; and the parameters: see core/formats/c3d.hpp.
     """
 
@@ -167,6 +168,14 @@ def place(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), ord
     Columns are told as joint and kind. None where bones stretch.
     """
 
+def read_integers(data: bytes, begin: int, count: int) -> tuple[Annotated[NDArray[numpy.uint64], dict(shape=(None,))], int]:
+    """
+    Read so many integers, as docs/format.md has them; give them, (N,), and their end.
+    """
+
+def write_integers(numbers: Annotated[NDArray[numpy.uint64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> bytes:
+    """Write integers, (N,)."""
+
 def match_rows(data: bytes, offsets: Annotated[NDArray[numpy.uint64], dict(shape=(None,), order='C', device='cpu', writable=False)], counters: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], selected: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], template: tuple[bool, Sequence[bytes], Sequence[int], Sequence[int], int], formats: Annotated[NDArray[numpy.uint8], dict(shape=(None, 4), order='C', device='cpu', writable=False)]) -> tuple[Annotated[NDArray[numpy.uint8], dict(shape=(None,))], Annotated[NDArray[numpy.uint64], dict(shape=(None,))], Annotated[NDArray[numpy.uint32], dict(shape=(None,))], list[bytes]]:
     """
     Compare rows with a template: its counter, literals, columns, widths and the width
@@ -182,6 +191,73 @@ def print_rows(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None)
 
     Cells, in order, stand for the numbers at their slots; rows without a template (-1)
     are the next of ``raw``.
+    """
+
+class TableSurvey:
+    """What columns of a table hold, looked at in parts."""
+
+    def __init__(self, delimiter: bytes, line_break: bytes, width: int) -> None: ...
+
+    def add(self, text: bytes, sampled: int) -> None:
+        """Take whole lines; of so many rows, spread evenly, the cells are kept."""
+
+    @property
+    def rows(self) -> int: ...
+
+    @property
+    def columns(self) -> list[tuple[int, int, int, bool, bytes, int, bytes, bool, float, float, float]]:
+        """
+        Numbers, missing, texts, whether all cells are the same, the first; the width to which
+        numbers are padded, the text for no number; whether numbers rise, the first, the last
+        and the longest step.
+        """
+
+    def sample(self, column: int) -> list[tuple[int, bytes]]:
+        """Give row and text of the cells of a column that were kept."""
+
+    def formats(self) -> Annotated[NDArray[numpy.uint8], dict(shape=(None, None))]:
+        """Choose a format per column, (C, 4), as docs/format/layout.md has them."""
+
+class TableMatcher:
+    """
+    Compares a table with what its columns print, and takes its numbers out.
+
+    A column is kind, format, width, missing, text; first, step and divisor.
+    """
+
+    def __init__(self, delimiter: bytes, line_break: bytes, columns: Sequence[tuple[int, bytes, int, bytes, bytes, float, float, float]]) -> None: ...
+
+    def match(self, text: bytes) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
+        """Take whole lines; give the numbers of their rows."""
+
+    @property
+    def rows(self) -> int: ...
+
+    @property
+    def counts(self) -> list[int]:
+        """Of cells that are written otherwise, per column."""
+
+    @property
+    def kept(self) -> int:
+        """Bytes of all that is kept."""
+
+    def others(self, column: int) -> tuple[int, bytes]: ...
+
+    def texts(self, column: int) -> bytes: ...
+
+    def verbatim(self) -> tuple[int, bytes]: ...
+
+class TablePrinter:
+    """Prints a table, a run of rows after the other."""
+
+    def __init__(self, delimiter: bytes, line_break: bytes, columns: Sequence[tuple[int, bytes, int, bytes, bytes, float, float, float]], others: Sequence[tuple[int, bytes]], verbatim: tuple[int, bytes], rows: int) -> None: ...
+
+    def print(self, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], most: int) -> bytes:
+        """Print the next rows; ValueError where they have more bytes."""
+
+def pass_texts(record: bytes, begin: int, count: int, most_place: int, steps: bool) -> int:
+    """
+    Give where so many texts end in a record; ValueError where they are none.
     """
 
 def app_precisions(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)]) -> list[int]:
@@ -328,11 +404,34 @@ def near_encode(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], 
 def near_decode(header: bytes, payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
     """Fill ``values`` from a chunk; ValueError where it is none."""
 
-def code_by_products(turns: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], importance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], most: int, tolerance: float, sorted: bool) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
+def qssd_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, model: bytes, most: int, rounding: float, rest_rounding: float, max_error: float) -> bytes:
+    """Code rows of values as a chunk: core/qssd_learning/encoder.hpp."""
+
+def qssd_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], header: bytes, model: bytes) -> None:
+    """Fill ``values`` from a chunk; ValueError where it is none."""
+
+def qssd_symbols(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, model: bytes, most: int, rounding: float, rest_rounding: float) -> Annotated[NDArray[numpy.int64], dict(shape=(None, None))]:
+    """Give what rows are coded as, (samples, atoms + columns)."""
+
+def qssd_kinds(frames: int, header: bytes, columns: int, model: bytes) -> Annotated[NDArray[numpy.uint64], dict(shape=(None,))]:
+    """Give the kinds of the stages of the samples."""
+
+def qssd_turns(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None))]:
+    """Give the turns of joints, (F, J, 4)."""
+
+def qssd_displacements(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None))]:
+    """Give what frames turn by from their predictions, (samples, J, 4)."""
+
+def code_by_products(turns: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], importance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], most: int, tolerance: float, least: float, sorted: bool) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
     """
     Code frames, (F, J, 4), by atoms, (K, J, 3): Algorithm 2.
 
     Gives each frame's atoms, (F, most), -1 behind the last, and their weights.
+    """
+
+def quantize_products(turns: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], importance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], atoms: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu')], weights: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], step: float, rounding: float) -> None:
+    """
+    Make ``weights`` multiples of ``step``, each the best beside the others, in place.
     """
 
 def learn_products(turns: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], importance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], atoms: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu')], weights: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:

@@ -11,6 +11,7 @@ from mocapress.container import diffma_json
 from mocapress.errors import MissingModelError
 from mocapress.models import Place, find_model
 from mocapress.motion import Clip, Stream
+from mocapress.motion.figure import doubtful_root, unit_of
 from mocapress.motion.markers import (
     ANALOG,
     POINTS,
@@ -20,14 +21,19 @@ from mocapress.motion.markers import (
     force_plates,
     markers,
 )
-from mocapress.motion.units import suggest_unit
 from mocapress.source import Source
 
 
 def describe_file(
     source: Source, *, asf_path: Path | None = None, strict: bool = True
 ) -> dict[str, Any]:
-    """Describe a motion file."""
+    """Describe a motion file; of a large one no more is read than that needs, where that can be."""
+    of = source.format
+    if of is not None and of.outline is not None and source.size >= api.LONG:
+        parts = of.outline(source, source.name or None)
+        source.accept(parts.problems, strict=strict)
+        told = describe_clip(source.described(of, parts.stored, parts.clip), parts.frames[0])
+        return {"bytes": source.size, "format": source.kind} | told
     clip = api.read_source(source, asf_path, strict=strict)
     return {"bytes": source.size, "format": source.kind} | describe_clip(clip)
 
@@ -48,7 +54,8 @@ def describe_clip(clip: Clip, frames: int | None = None) -> dict[str, Any]:
         "skeleton": clip.metadata.get("skeleton"),
         "skeleton_found": clip.metadata.get("skeleton_found"),
         "number_formats": ", ".join(sorted(kinds)) or None,
-        "unit_suggested": (suggest_unit(skeleton) or "nothing usual") if skeleton else None,
+        "unit_suggested": (unit_of(clip) or "nothing usual") if skeleton else None,
+        "root": doubtful_root(clip),
     } | _recorded(clip)
 
 

@@ -51,7 +51,7 @@ def train(sources: Iterable[Named | Clip], codec: str | Codec = DEFAULT_CODEC) -
     if first is None:
         raise ParameterError("nothing to learn from", expected="at least one clip")
     with naming_faults(made):
-        return learner.train(clip.main for clip in chain([first], clips))
+        return learner.learn(chain([first], clips))
 
 
 def model_bytes(model: Model) -> bytes:

@@ -7,7 +7,9 @@ docs/format.md, section "Conventions", has all of them.
 
 import struct
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from itertools import groupby
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +17,35 @@ from numpy.typing import NDArray
 from mocapress.errors import CorruptError, UnsupportedError
 
 _MOST_DECIMALS = 15
+
+
+class Ranges(Protocol):
+    """A file of which parts are read."""
+
+    @property
+    def size(self) -> int:
+        """Number of bytes."""
+        ...
+
+    def read(self, start: int = 0, stop: int | None = None) -> bytes:
+        """Give bytes [start, stop), or as many of them as there are."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """Bytes in memory, as a file of which parts are read."""
+
+    data: bytes
+
+    @property
+    def size(self) -> int:
+        """Number of bytes."""
+        return len(self.data)
+
+    def read(self, start: int = 0, stop: int | None = None) -> bytes:
+        """Give bytes [start, stop), or as many of them as there are."""
+        return self.data[start:stop]
 
 
 class Writer:

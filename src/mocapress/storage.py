@@ -14,7 +14,7 @@ import hashlib
 import os
 import secrets
 import stat
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
@@ -38,13 +38,17 @@ _NEW = _flags("RDWR", "CREAT", "EXCL", "NOFOLLOW", "CLOEXEC", "BINARY")
 _LEFT = _flags("RDONLY", "NOFOLLOW", "NONBLOCK", "CLOEXEC")
 
 
+Contents = bytes | Iterable[bytes]
+"""Of a file: its bytes, or these part after part, which may be asked for once only."""
+
+
 class ExistsError(MocapressError):
     """The output file exists and was not to be overwritten."""
 
 
 def write_whole(
     path: str | Path,
-    data: bytes,
+    data: Contents,
     *,
     force: bool = False,
     like: os.stat_result | None = None,
@@ -55,7 +59,7 @@ def write_whole(
 
 
 def write_all(
-    files: Mapping[Path, bytes],
+    files: Mapping[Path, Contents],
     *,
     force: bool = False,
     like: os.stat_result | None = None,
@@ -70,7 +74,8 @@ def write_all(
     Parameters
     ----------
     files
-        Paths and their contents. The folders must exist.
+        Paths and their contents. The folders must exist. An error that comes while contents are
+        asked for ends the writing: then there is none of the files.
     force
         Whether files that exist are replaced.
     like
@@ -151,7 +156,7 @@ def check_targets(paths: Sequence[Path], *, force: bool) -> None:
 
 @contextmanager
 def _part(
-    target: Path, data: bytes, like: os.stat_result | None, changed: int | None
+    target: Path, data: Contents, like: os.stat_result | None, changed: int | None
 ) -> Iterator[Path]:
     """Write the data under a temporary name, which is gone at the end."""
     model = like
@@ -289,10 +294,11 @@ def _old(target: Path) -> Path:
     return _temporary(target).with_suffix(".old")
 
 
-def _write(descriptor: int, data: bytes) -> None:
-    rest = memoryview(data)
-    while rest:
-        rest = rest[os.write(descriptor, rest) :]
+def _write(descriptor: int, data: Contents) -> None:
+    for part in (data,) if isinstance(data, bytes) else data:
+        rest = memoryview(part)
+        while rest:
+            rest = rest[os.write(descriptor, rest) :]
 
 
 def _permit(descriptor: int, model: os.stat_result) -> None:

@@ -120,7 +120,7 @@ def descend(frame: list[Quaternion], atoms: list[list[Vector]], weights: list[fl
             weight = math.copysign(magnitude, weight)
             moved = max(moved, abs(weight - weights[p]))
             weights[p] = weight
-        if moved < 1e-6:
+        if moved <= 1e-4 * abs(weights[0]):
             return
 
 

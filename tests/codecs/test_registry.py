@@ -66,6 +66,7 @@ def test_it_keeps_the_contract(other_package: str) -> None:
         "diffma",
         "mrpa",
         "near",
+        "qssd",
         "broken",
         "deflated",
         "stranger",
@@ -109,7 +110,7 @@ def test_one_that_cannot_be_used_says_why(other_package: str) -> None:
     with pytest.raises(UnsupportedError, match=r"is not a mocapress\.codecs\.Codec"):
         codecs.codec("stranger")
     with pytest.raises(
-        ParameterError, match="unknown codec; expected exact, app, diffma, mrpa, near, bro"
+        ParameterError, match="unknown codec; expected exact, app, diffma, mrpa, near, qssd, bro"
     ):
         codecs.codec("nothing")
 

@@ -14,7 +14,8 @@ import pytest
 from c3d_files import DEC, INTEL, MIPS, c3d, swapped, walk
 
 import mocapress as mp
-from mocapress.formats.c3d import C3dLayout, read_layout, split
+from mocapress.formats.c3d import split
+from mocapress.formats.c3d_layout import C3dLayout, read_layout
 from mocapress.formats.c3d_parameters import described
 from mocapress.motion import Clip, Stream
 

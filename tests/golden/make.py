@@ -98,6 +98,10 @@ ASF = b""":version 1.10
 """
 
 WALK_AMC, WALK_LF, WALK_BVH = amc("\r\n").encode(), amc("\n").encode(), (BVH + bvh_rows()).encode()
+# The middle one of three turns at a right angle; and a number that no motion has.
+POLE_ROWS = ["0 0 0 0 90 0 0 90 0"] * FRAMES
+POLE_ROWS[9] = "1e18 0 0 0 90 0 0 90 0"
+POLE = (BVH + "\n".join([*POLE_ROWS, ""])).encode()
 # What is compressed, and how; of each codec some have at least three chunks. NAME.mcz holds NAME.
 FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_walk.amc": (WALK_AMC, "app:chunk=75", {}),
@@ -126,6 +130,9 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_numbers.bvh": (clips.numbers(), "exact:chunk=16", {}),
     "v1_couplings.bvh": (clips.couplings(), "exact:level=3,chunk=32", {}),
     "v1_couplings_lossy.bvh": (clips.couplings(), "diffma:bits=8,order=2,window=3,chunk=30", {}),
+    "v1_sparse.amc": (WALK_LF, "qssd:chunk=100", {}),
+    "v1_sparse.bvh": (WALK_BVH, "qssd:omit=1,levels=4,max_error=0.25,chunk=90", {}),
+    "v1_sparse_disorder.amc": (clips.disorder(), "qssd:omit=0,levels=2,chunk=10", {}),
     "v1_leaps.amc": (clips.leaps(), "exact:level=7,chunk=22", {}),
     "v1_skeleton.amc": (clips.skeleton(), "exact:level=8,chunk=12", {}),
     "v1_signed.bvh": (clips.layouts("signed"), "exact:level=1,chunk=12", {}),
@@ -148,6 +155,7 @@ TRAINED = {
     # With a model no lower level is taken.
     "v1_trained_disorder.amc": (clips.disorder(), "exact:chunk=10"),
     "v1_trained_numbers.bvh": (clips.numbers(), "exact:chunk=16"),
+    "v1_trained_sparse.bvh": (clips.couplings(), "qssd:atoms=9,omit=0,chunk=30,max_error=5.0"),
     "v1_trained_skeleton.amc": (clips.skeleton(), "exact:level=9,chunk=12"),
 }
 # Beside NAME the document NAME.diffma.json; what comes back of it is NAME.
@@ -250,6 +258,8 @@ if __name__ == "__main__":
         put(name, partial(bytes, data))
         put(model.name, partial(trained, name, codec))
         put(f"{name}.mcz", partial(mp.compress, HERE / name, codec, model=model))
+        if not mp.codec(codec).lossless:
+            put(f"{name}.back", partial(mp.decompress, HERE / f"{name}.mcz", models=[model]))
     # Without an original; NAME.f64 holds the numbers.
     numbers = mp.read(HERE / "v1_numbers.bvh")
     put("v1_numbers_app.mcz", lambda: mp.compress(numbers, "app:chunk=15"))
@@ -258,6 +268,8 @@ if __name__ == "__main__":
         lambda: mp.compress(numbers, "mrpa:mode=published,mantissa_limit=12,chunk=15"),
     )
     put("v1_numbers_fast.mcz", lambda: mp.compress(numbers, "exact:level=2,chunk=16"))
+    pole = mp.read(POLE)
+    put("v1_sparse_pole.mcz", lambda: mp.compress(pole, "qssd:chunk=100"))
     put("v1_still.mcz", lambda: mp.compress(still(), "exact:chunk=2"))
     put("v1_streams.mcz", lambda: mp.compress(streams(), "exact:chunk=80"))
     put("v1_recorded.mcz", partial(recorded, "exact:chunk=80", closed=True))

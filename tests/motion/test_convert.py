@@ -13,7 +13,6 @@ from mocapress.motion import Clip, Joint, Skeleton, convert
 from mocapress.motion.columns import skeleton_columns
 from mocapress.motion.convert import to_amc_clip, to_bvh_clip
 from mocapress.motion.kinematics import positions
-from mocapress.motion.units import suggest_unit
 
 
 def same_places(before: Clip, after: Clip, tolerance: float) -> float:
@@ -100,19 +99,6 @@ def test_angles_go_on_where_they_can(samples: Path) -> None:
     clip = to_bvh_clip(mp.read(samples / "cmu_01_01.amc"), fps=120)
     turning = [i for i, column in enumerate(clip.columns) if column.kind[0] == "r"]
     assert np.abs(np.diff(clip.values[:, turning], axis=0)).max() < 60
-
-
-def test_the_unit_is_suggested(samples: Path) -> None:
-    def unit(name: str) -> str:
-        skeleton = mp.read(samples / name).skeleton
-        assert skeleton is not None
-        return suggest_unit(skeleton) or ""
-
-    assert unit("cmu_01_01.amc").startswith("1 unit is 5.644 cm")
-    assert unit("freebvh.bvh").startswith("cm")
-    converted = to_bvh_clip(mp.read(samples / "cmu_01_01.amc"), fps=120).skeleton
-    assert converted is not None
-    assert "5.644" in (suggest_unit(Skeleton(converted.joints)) or "")
 
 
 @pytest.mark.corpus

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mocapress.api.opening import Opened
-from mocapress.api.restoring import contents
+from mocapress.api.restoring import pieces
 from mocapress.container import CHANNELS, Damage, diffma_json
 from mocapress.errors import MissingModelError, MocapressError
 from mocapress.models import Place
@@ -61,14 +61,27 @@ def verify_opened(opened: Opened) -> Checked:
         opened.source.allow(original.size)
     for index, head in enumerate(opened.streams):
         if head.kind == CHANNELS:
-            size += opened.rows(index).values.nbytes
+            size += _decoded(opened, index)
     if original is not None:
         size = original.size
         try:
             if not opened.damage:
-                contents(opened, original)
+                opened.salvage = False  # nothing is lost
+                for _ in pieces(opened, original):
+                    pass
         except MissingModelError:
             raise
         except MocapressError as error:
             opened.damage.append(Damage("the original file", error))
     return Checked(size, tuple(opened.damage))
+
+
+def _decoded(opened: Opened, stream: int) -> int:
+    """Decode a stream; give the bytes of its numbers."""
+    frame, last = 0, opened.frames(stream)
+    opened.source.allow(opened.bytes_of(stream, last))
+    while frame < last:
+        begin, end = opened.run_at(stream, frame)
+        opened.rows(stream, max(begin, frame), end)
+        frame = end
+    return 8 * last * len(opened.streams[stream].columns)

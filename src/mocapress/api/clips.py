@@ -1,7 +1,8 @@
 """From clips to compressed files."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import PurePath
 
 from mocapress import codecs
 from mocapress.api.encoding import coded, stored_skeleton
@@ -10,6 +11,7 @@ from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.codecs.loss import Loss, checked_loss
 from mocapress.container import Head, Mcz, MczWriter, is_storable_time
 from mocapress.errors import UnsupportedError, VerificationError
+from mocapress.formats.problems import Problem
 from mocapress.motion import Clip
 from mocapress.source import Source
 
@@ -83,3 +85,14 @@ def checked_codec(codec: str | Codec, model: Model | None) -> Codec:
 def readable(name: str) -> str:
     """Replace what is no UTF-8 in the name of a file."""
     return name.encode(errors="surrogateescape").decode(errors="replace")
+
+
+def stored_name(path: str) -> str:
+    """Give a file's name without folders."""
+    return readable(PurePath(path).name)
+
+
+def problems_told(problems: Sequence[Problem], source: Source) -> str | None:
+    """Say where a file departs from its format; None where it does not."""
+    file = source.name or None
+    return "; ".join(str(problem.error(file)) for problem in problems) or None

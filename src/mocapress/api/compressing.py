@@ -2,12 +2,21 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path, PurePath
+from pathlib import Path
 
-from mocapress.api.clips import Compressed, checked_codec, compress_clip, readable
+from mocapress.api.clips import (
+    Compressed,
+    checked_codec,
+    compress_clip,
+    problems_told,
+    stored_name,
+)
 from mocapress.api.encoding import CodedStream, coded, coded_streams, placed, stored_skeleton
+from mocapress.api.long import compress_long
 from mocapress.api.opening import Opened
-from mocapress.api.restoring import printed
+from mocapress.api.plain import compress_plain
+from mocapress.api.repetition import Repetition, may_be_smaller
+from mocapress.api.restoring import pieces
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.codecs.fallback import first_that_works
 from mocapress.codecs.loss import checked_loss
@@ -21,11 +30,10 @@ from mocapress.models import load_model
 from mocapress.motion import Clip
 from mocapress.source import Named, Source
 
-# Below this size, or above this share of the original, the general-purpose way is tried as well.
+# Below this size the general-purpose way is tried as well.
 _SMALL = 2**15
 # Files of stored numbers, unlike text, may repeat themselves.
 _SMALL_OF_NUMBERS = 2**23
-_POOR = 0.4
 
 
 def compress(
@@ -78,8 +86,12 @@ def compress(
         model = load_model(model)
     if isinstance(source, Clip):
         return compress_clip(source, codec, model=model, notes=notes).blob
+    opened = Source(source)
+    long = None if model is not None else compress_long(opened, codec, notes)
+    if long is not None:
+        return b"".join(long)
     return compress_source(
-        Source(source), codec, asf_path=asf_path, embed_asf=embed_asf, model=model, notes=notes
+        opened, codec, asf_path=asf_path, embed_asf=embed_asf, model=model, notes=notes
     ).blob
 
 
@@ -149,7 +161,7 @@ def compress_parts(
     data = source.data
     found: Compressed | None = None
     if parts is not None:
-        warning = _warning_of(parts, source)
+        warning = problems_told(parts.problems, source)
         reason = unfit(parts, len(data))
         if reason:
             warning = warning or f"{reason}; stored by a general-purpose compressor"
@@ -181,20 +193,18 @@ def smallest(
 ) -> bytes:
     """Give the file that a codec made, or one of a general-purpose compressor.
 
-    The latter is tried where no codec made one, on small files and where the codec saves little;
-    the smaller is kept.
+    The latter is tried where no codec made one, on small files, where the codec saves little, and
+    where rows come again; the smaller is kept.
     """
     size = len(source.data)
     small = _SMALL if parts is None or parts.stored is None else _SMALL_OF_NUMBERS
-    if blob is not None and size >= small and len(blob) <= _POOR * size:
-        return blob
-    plain = _compress_plain(source, notes or {})
+    if parts is not None and blob is not None and size >= small:
+        repetition = Repetition()
+        repetition.add(parts.clip.values)
+        if not may_be_smaller(repetition, len(blob), size):
+            return blob
+    plain = compress_plain(source, notes or {})
     return plain if blob is None or len(plain) < len(blob) else blob
-
-
-def _warning_of(parts: Split, source: Source) -> str | None:
-    file = source.name or None
-    return "; ".join(str(problem.error(file)) for problem in parts.problems) or None
 
 
 def unfit(parts: Split, size: int) -> str | None:
@@ -266,11 +276,6 @@ def motion_file(
     return b"".join(made)
 
 
-def stored_name(path: str) -> str:
-    """Give a file's name without folders."""
-    return readable(PurePath(path).name)
-
-
 def _companions(source: Source) -> list[Companion]:
     used = source.used
     of = source.format
@@ -284,25 +289,20 @@ def _checked(blob: bytes, data: bytes, codec: Codec, clip: Clip, model: Model | 
     failure = "the file does not come back"
     try:
         opened = Opened(Source(blob, limit=None), [model] if model else [])
-        rows = opened.rows()
         original = opened.mcz.original
         assert original is not None
-        restored = printed(opened, original, rows)
         if not codec.lossless:
-            return Compressed(blob, None, checked_loss(codec, clip, rows.values), opened.mcz)
-        if restored == data:
+            for _ in pieces(opened, original):
+                pass
+            loss = checked_loss(codec, clip, opened.rows().values)
+            return Compressed(blob, None, loss, opened.mcz)
+        place = 0
+        for piece in pieces(opened, original):
+            if data[place : place + len(piece)] != piece:
+                break
+            place += len(piece)
+        if place == len(data):
             return Compressed(blob, None, None, opened.mcz)
     except CorruptError as error:
         failure = error.what
     raise VerificationError(f"codec {codec.id} failed its check ({failure}); please report this")
-
-
-def _compress_plain(source: Source, notes: Mapping[str, str]) -> bytes:
-    data, name = source.data, stored_name(source.name)
-    parts: list[bytes] = []
-    writer = MczWriter(parts.append)
-    writer.original(Original("", name, len(data), source.digest, (), pack(data, hard=True)))
-    if notes:
-        writer.notes(notes)
-    writer.end()
-    return b"".join(parts)

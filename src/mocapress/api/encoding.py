@@ -14,7 +14,7 @@ from mocapress.container import CodecSpec, CodedChunk, Entry, StreamHead, is_sto
 from mocapress.errors import UnsupportedError
 from mocapress.motion import Clip, Column, Skeleton, Stream
 
-_LONGEST_CHUNK = 2**20
+LONGEST_CHUNK = 2**20
 
 
 def stream_head(name: str, stream: Stream, codec: Codec, *, frames: int | None) -> StreamHead:
@@ -98,7 +98,7 @@ def coded_streams(
         chunk = getattr(way, "chunk", None)
         if chunk and times > 1:
             way = codecs.from_parameters(
-                way.id, {**codecs.parameters(way), "chunk": min(chunk * times, _LONGEST_CHUNK)}
+                way.id, {**codecs.parameters(way), "chunk": min(chunk * times, LONGEST_CHUNK)}
             )
         own = model if index == 0 else None
         made.append(CodedStream(way, way.encode(stream, skeleton=clip.skeleton, model=own)))

@@ -16,6 +16,9 @@ from mocapress.errors import CorruptError, MissingModelError, MocapressError, Pa
 from mocapress.models import Place, find_model
 from mocapress.source import Source
 
+_RUN = 2**21
+"""Numbers that are decoded together where the whole is worked on in parts."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rows:
@@ -124,17 +127,19 @@ class Opened:
         head = self.streams[stream]
         last = self.mcz.frames(stream) if last is None else last
         self.source.allow(self.bytes_of(stream, max(last - first, 0)))
+        groups = _groups(self.mcz.of_stream[stream], first, last, alone=self.salvage)
+        if len(groups) == 1 and not self.salvage:
+            begin = first - groups[0][0].first
+            rows = self._decode(stream, groups[0], last)[begin:]
+            return Rows(rows, np.ones(len(rows), np.bool_))
         values = np.empty((max(last - first, 0), len(head.columns)))
         kept = np.zeros(len(values), np.bool_)
-        for group in _groups(self.mcz.of_stream[stream], first, last, alone=self.salvage):
+        for group in groups:
             try:
-                for chunk, rows in self._decode(stream, group, last):
-                    begin, end = max(chunk.first, first), min(chunk.first + len(rows), last)
-                    if begin < end:
-                        values[begin - first : end - first] = rows[
-                            begin - chunk.first : end - chunk.first
-                        ]
-                        kept[begin - first : end - first] = True
+                rows = self._decode(stream, group, last)
+                begin, end = max(group[0].first, first), group[0].first + len(rows)
+                values[begin - first : end - first] = rows[begin - group[0].first :]
+                kept[begin - first : end - first] = True
             except MissingModelError:
                 raise
             except MocapressError as error:
@@ -146,6 +151,22 @@ class Opened:
         if self.salvage:
             self._name_gaps(stream, first, last)
         return Rows(values, kept)
+
+    def run_at(self, stream: int, frame: int) -> tuple[int, int]:
+        """Give the frames that are best decoded together with one: whole chunks, not too many."""
+        entries, columns = self.mcz.of_stream[stream], len(self.streams[stream].columns)
+        last = self.frames(stream)
+        if not entries:
+            return 0, last
+        start = max(bisect_right(entries, frame, key=lambda entry: entry.first) - 1, 0)
+        while start > 0 and not entries[start].restart:
+            start -= 1
+        begin = entries[start].first
+        most = begin + _RUN // max(columns, 1)
+        for entry in entries[start + 1 :]:
+            if entry.restart and entry.last > most and entry.first > frame:
+                return begin, entry.first
+        return begin, last
 
     def _name_gaps(self, stream: int, first: int, last: int) -> None:
         """List frames of which there are no chunks."""
@@ -179,10 +200,11 @@ class Opened:
         """
         raise CorruptError("a chunk needs frames of other clips, which only its library has")
 
-    def _decode(
-        self, stream: int, group: Sequence[Entry], last: int
-    ) -> list[tuple[Entry, NDArray[np.float64]]]:
-        """Decode successive chunks with one codec header, the first of them a restart."""
+    def _decode(self, stream: int, group: Sequence[Entry], last: int) -> NDArray[np.float64]:
+        """Decode successive chunks with one codec header, the first of them a restart.
+
+        Gives their frames up to ``last``.
+        """
         if not group[0].restart or any(a.last != b.first for a, b in pairwise(group)):
             raise CorruptError(f"a chunk before frame {group[-1].first} is missing")
         read: list[CodedChunk] = [self.mcz.read_chunk(entry) for entry in group]
@@ -203,7 +225,6 @@ class Opened:
         others = self.needed(stream, digests) if digests else NO_OTHERS
         codec, model = self.codec(stream), self.model(stream)
         values = decoded(codec, header, chunks, head, model, stop, others)
-        parts = []
         for chunk in read:
             begin = chunk.entry.first - group[0].first
             rows = values[begin : begin + chunk.entry.frames]
@@ -214,8 +235,7 @@ class Opened:
                     expected=f"{chunk.digest:08x}",
                     found=f"{digest(rows):08x}",
                 )
-            parts.append((chunk.entry, rows))
-        return parts
+        return values
 
 
 def decoded(

@@ -1,7 +1,7 @@
 """From compressed files back to the original files."""
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,6 +16,7 @@ from mocapress.formats.layout import Layout
 from mocapress.formats.layout_record import read_layout
 from mocapress.formats.number_formats import SHORTEST
 from mocapress.formats.patterns import References
+from mocapress.formats.rows import RowsOf
 from mocapress.models import Place
 from mocapress.source import DIFFMA_JSON, LIMIT, Named, Source
 
@@ -102,29 +103,88 @@ def restore_opened(opened: Opened) -> Restored:
 
 def contents(opened: Opened, original: Original) -> bytes:
     """Give the original file's bytes, and see that they are these."""
+    return b"".join(pieces(opened, original))
+
+
+def pieces(opened: Opened, original: Original) -> Iterator[bytes]:
+    """Give the original file's bytes part after part, and see at the end that they are these."""
     opened.source.allow(original.size)
+    lossless = True
     if not original.format:
-        data, lossless = original.contents(), True
+        parts = original.contents()
     elif not opened.streams:
         raise CorruptError("the head of this file is damaged: no numbers can be decoded")
     else:
-        data = printed(opened, original, opened.rows())
-        lossless = opened.codec().lossless and not opened.damage
-    found = hashlib.sha256(data).digest()
-    if lossless and found != original.digest:
+        lossless = opened.codec().lossless
+        parts = _printed_parts(opened, original)
+    made = hashlib.sha256()
+    for part in parts:
+        made.update(part)
+        yield part
+    found = made.digest()
+    if lossless and not opened.damage and found != original.digest:
         raise CorruptError(
             "wrong digest of the contents", expected=original.digest.hex(), found=found.hex()
         )
-    return data
+
+
+def _printed_parts(opened: Opened, original: Original) -> Iterator[bytes]:
+    """Decode and print, a run of rows after the other."""
+    size, source = original.size, opened.source
+    source.allow(sum(opened.bytes_of(i, opened.frames(i)) for i in range(len(opened.streams))))
+    own = own_layout(original)
+    if own is None and opened.salvage and opened.codec().lossless:
+        # Which rows are lost must be known before the first is printed.
+        yield printed(opened, original, opened.rows())
+        return
+    most = size
+    layout: StoredLayout | Layout
+    if own is None:
+        frames, columns = opened.frames(), len(opened.streams[0].columns)
+        sizes = [(frames, columns)]
+        if not opened.codec().lossless:
+            most = limits.most_printed(size, frames * columns)
+        layout = layout_of(opened, original, frames)
+    else:
+        sizes, most, layout = own.sizes, limits.most_printed(size, 0), own
+    found = [
+        (opened.frames(index), len(opened.streams[index].columns)) for index in range(len(sizes))
+    ]
+    if len(opened.streams) < len(sizes) or found != sizes:
+        raise CorruptError("the streams do not fit the layout")
+    count = 0
+    for part in layout.pieces(in_order(opened), most):
+        count += len(part)
+        source.allow(count)
+        yield part
+
+
+def in_order(opened: Opened) -> RowsOf:
+    """Give rows of streams that are asked for in their order: no chunk is decoded twice."""
+    held: dict[int, tuple[int, NDArray[np.float64]]] = {}
+
+    def rows(stream: int, first: int, last: int) -> NDArray[np.float64]:
+        parts: list[NDArray[np.float64]] = []
+        while first < last or not parts:
+            begin, values = held.get(stream, (0, np.empty((0, 0))))
+            if not begin <= first < begin + len(values) and first < last:
+                held[stream] = (0, np.empty((0, 0)))
+                del values
+                begin, end = opened.run_at(stream, first)
+                values = opened.rows(stream, begin, end).values
+                held[stream] = begin, values
+            stop = min(last, begin + len(values))
+            parts.append(values[first - begin : stop - begin])
+            first = stop
+        return parts[0] if len(parts) == 1 else np.concatenate(parts)
+
+    return rows
 
 
 def printed(opened: Opened, original: Original, rows: Rows) -> bytes:
     """Print decoded rows in the original's layout; lost rows are left out."""
     size, source = original.size, opened.source
     source.allow(sum(opened.bytes_of(i, opened.frames(i)) for i in range(len(opened.streams))))
-    own = own_layout(original)
-    if own is not None:
-        return own.join([rows.values, *_others(opened)], limits.most_printed(size, 0))
     most = size
     if not opened.codec().lossless:
         most = limits.most_printed(size, rows.values.size)
@@ -140,11 +200,6 @@ def own_layout(original: Original) -> StoredLayout | None:
     """Read the layout of a format that has its own kind of layout; None for rows of text."""
     of = formats.by_id(original.format)
     return None if of.read_layout is None else of.read_layout(original.layout())
-
-
-def _others(opened: Opened) -> list[NDArray[np.float64]]:
-    """Decode all streams but the first; what is lost is NaN."""
-    return [opened.rows(index).values for index in range(1, len(opened.streams))]
 
 
 def layout_of(opened: Opened, original: Original, rows: int) -> Layout:

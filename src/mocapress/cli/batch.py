@@ -18,7 +18,7 @@ import typer
 from mocapress.cli.report import Report
 from mocapress.cli.warned import collecting, kept
 from mocapress.errors import MotionWarning, ParameterError
-from mocapress.storage import check_targets, is_stream, write_all
+from mocapress.storage import Contents, check_targets, is_stream, write_all
 
 if TYPE_CHECKING:
     from mocapress.source import Source
@@ -56,7 +56,7 @@ class Job:
     """Whether the source is no file but a name in a library."""
     share: float = 1
     """How much of all the work it is."""
-    outputs: dict[Path, bytes] = field(default_factory=dict)
+    outputs: dict[Path, Contents] = field(default_factory=dict)
     """What was made and is to be stored, all of it or nothing."""
     modified: int | None = None
     """What the outputs get as their modification time, in nanoseconds since 1970."""
@@ -241,7 +241,8 @@ def _worked(job: Job, work: Callable[[Job], dict[str, Any]], storing: _Storing) 
     result = work(job)
     if not files:
         for data in job.outputs.values():
-            _to_stdout(data)
+            # What is wrong shows at the end; before that nothing must be given.
+            _to_stdout(data if isinstance(data, bytes) else b"".join(data))
     elif job.outputs:
         for path in job.outputs:
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -142,12 +142,20 @@ def compress(
         assert job.target is not None
         source = job.opened()
         facts: dict[str, Any] = {}
-        if to is Packed.MCZ:
+        blob: bytes | api.LongFile | None
+        loss: Loss | None = None
+        if (
+            to is Packed.MCZ
+            and learned is None
+            and (blob := api.compress_long(source, made, notes))
+        ):
+            facts["warning"] = blob.warning or None
+        elif to is Packed.MCZ:
             compressed = api.compress_source(
                 source, made, asf_path=asf, embed_asf=embed_asf, model=learned, notes=notes
             )
             blob = compressed.blob
-            loss: Loss | None = compressed.loss
+            loss = compressed.loss
             facts["warning"] = compressed.warning
         else:
             text, loss = diffma_json.file_to_json(source, made, asf_path=asf)

@@ -1,7 +1,7 @@
 """``decompress``."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
@@ -23,7 +23,12 @@ from mocapress.cli.options import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
     from mocapress.cli.batch import Job
+    from mocapress.source import Source
+
+T = TypeVar("T")
 
 
 def decompress(
@@ -74,26 +79,37 @@ def decompress(
         parents=parents,
     )
 
-    def work(job: "Job") -> dict[str, Any]:
-        assert job.target is not None
-        source = job.opened(limit)
+    def hinted(source: "Source", restored: "Callable[[], Iterable[T]]") -> "Iterator[T]":
         try:
-            restored = api.restore(source, places_for(job, given), salvage=salvage)
+            yield from restored()
         except CorruptError as error:
             if not salvage and source.kind == MCZ:
                 error.what += " (--salvage restores what is left)"
             raise
-        job.outputs[job.target] = restored.data
-        if with_asf and job.target != STREAM:
-            for companion in restored.companions:
-                job.outputs[job.target.with_suffix(f".{companion.format}")] = companion.data
-        whole = len(job.outputs) == 1 + len(restored.companions) and not restored.damage
+
+    def work(job: "Job") -> dict[str, Any]:
+        assert job.target is not None
+        source = job.opened(limit)
+        places = places_for(job, given)
+        long = None if salvage else api.restored_long(source, places)
+        if long is not None:
+            size, parts = long
+            job.outputs[job.target] = hinted(source, lambda: parts)
+            whole = True
+        else:
+            (restored,) = hinted(source, lambda: [api.restore(source, places, salvage=salvage)])
+            size = len(restored.data)
+            job.outputs[job.target] = restored.data
+            if with_asf and job.target != STREAM:
+                for companion in restored.companions:
+                    job.outputs[job.target.with_suffix(f".{companion.format}")] = companion.data
+            whole = len(job.outputs) == 1 + len(restored.companions) and not restored.damage
         job.remove = remove and whole
         kept = "not removed, as it holds more than was restored (see --with-asf)"
         return {
             "warning": kept if remove and not whole else None,
             "output": str(job.target),
-            "raw_bytes": len(restored.data),
+            "raw_bytes": size,
             "compressed_bytes": source.size,
         }
 

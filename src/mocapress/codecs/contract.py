@@ -228,6 +228,10 @@ class Codec(ABC):
         """
         raise ParameterError(f"codec {self.id} takes no model")
 
+    def learn(self, clips: Iterable[Clip]) -> Model:
+        """Learn a model from clips; a codec that looks at skeletons overrides it."""
+        return self.train(clip.main for clip in clips)
+
     def largest_errors(self, columns: Sequence[Column]) -> list[float]:
         """Give the error up to which each column may come back; infinite where none was asked."""
         return [0.0 if self.lossless else inf] * len(columns)

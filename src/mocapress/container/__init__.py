@@ -3,7 +3,7 @@
 from mocapress.container.chunks import CodedChunk, Entry
 from mocapress.container.head import CHANNELS, CodecSpec, Head, StreamHead, is_storable_time
 from mocapress.container.mcm import Mcm, pack_model, parse_model, peek_model
-from mocapress.container.mcz import Damage, Mcz, Ranges, open_mcz
+from mocapress.container.mcz import Damage, Mcz, open_mcz
 from mocapress.container.original import Companion, Original
 from mocapress.container.packing import pack, unpack
 from mocapress.container.skeletons import is_storable
@@ -23,7 +23,6 @@ __all__ = [
     "Mcz",
     "MczWriter",
     "Original",
-    "Ranges",
     "StreamHead",
     "is_storable",
     "is_storable_time",

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from mocapress.container import limits
 from mocapress.container.chunks import DISTANCE, CodedChunk, Entry, read_chunk, read_end
@@ -25,24 +25,11 @@ from mocapress.container.sections import (
 )
 from mocapress.container.tags import MAGIC, VERSION, Tag
 from mocapress.errors import CorruptError, MocapressError, UnsupportedError
-from mocapress.records import Reader
+from mocapress.records import Ranges, Reader
 
 _BEGIN = len(MAGIC) + 1
 _FRONT = 2**14
 """Bytes that are read first; mostly all that stands before the chunks is in them."""
-
-
-class Ranges(Protocol):
-    """A file of which parts are read."""
-
-    @property
-    def size(self) -> int:
-        """Number of bytes."""
-        ...
-
-    def read(self, start: int = 0, stop: int | None = None) -> bytes:
-        """Give bytes [start, stop), or as many of them as there are."""
-        ...
 
 
 class Damage(NamedTuple):

@@ -1,11 +1,11 @@
 """The original file's facts and layout, and what belongs to it: docs/format.md, "File", "Notes"."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from mocapress.container import limits
-from mocapress.container.packing import pack, unpack
+from mocapress.container.packing import pack, unpack, unpacked_parts
 from mocapress.errors import CorruptError
 from mocapress.formats.problems import Problem
 from mocapress.records import Reader, Writer
@@ -41,8 +41,8 @@ class Original:
         """
         return unpack(self.packed, "layout", limits.most_layout(self.size, len(self.packed)))
 
-    def contents(self) -> bytes:
-        """Give the file, where it is no motion.
+    def contents(self) -> Iterator[bytes]:
+        """Give the file, where it is no motion, part after part.
 
         Raises
         ------
@@ -50,7 +50,7 @@ class Original:
             When it cannot be unpacked.
 
         """
-        return unpack(self.packed, "contents", self.size)
+        return unpacked_parts(self.packed, "contents", self.size)
 
 
 class Companion(NamedTuple):

@@ -2,6 +2,7 @@
 
 import lzma
 import zlib
+from collections.abc import Iterator
 from functools import cache
 from importlib import resources
 
@@ -10,6 +11,7 @@ from mocapress.records import Reader, Writer
 
 _STORED, _LZMA, _DEFLATE = range(3)
 _LEAST_LZMA, _FITTING = 2**12, 8
+_PART = 2**20
 
 
 def pack(data: bytes, *, hard: bool = False) -> bytes:
@@ -49,32 +51,62 @@ def unpack(data: bytes | memoryview, section: str, most_bytes: int = 2**62) -> b
         When the data is not what ``pack`` makes, or would give more than ``most_bytes``.
 
     """
+    return b"".join(unpacked_parts(data, section, most_bytes))
+
+
+def unpacked_parts(
+    data: bytes | memoryview, section: str, most_bytes: int = 2**62
+) -> Iterator[bytes]:
+    """Undo ``pack``, part after part; see ``unpack``. What is wrong may show at the end only."""
     reader = Reader(data, section)
     method = reader.integer(_DEFLATE)
     size = reader.integer(most_bytes)
     packed = reader.raw(len(data) - reader.position)
+    if method == _STORED:
+        parts: Iterator[bytes | None] = iter((packed,))
+    else:
+        parts = _inflated(packed) if method == _DEFLATE else _unlzma(packed, size)
+    found, complete = 0, True
     try:
-        if method == _STORED:
-            unpacked, complete = packed, True
-        elif method == _LZMA:
-            decoder = lzma.LZMADecompressor(
-                lzma.FORMAT_RAW, filters=[_lzma_filter(size, text=True)]
-            )
-            unpacked = decoder.decompress(packed, max_length=size + 1)
-            if not decoder.eof and len(unpacked) == size:
-                unpacked += decoder.decompress(b"", max_length=1)
-            complete = decoder.eof and not decoder.unused_data
-        else:
-            inflate = zlib.decompressobj(-15, zdict=_dictionary())
-            unpacked = inflate.decompress(packed, size + 1)
-            complete = inflate.eof and not inflate.unused_data
+        for part in parts:
+            if part is None:
+                complete = False
+                continue
+            found += len(part)
+            if found > size:
+                break
+            yield part
     except (lzma.LZMAError, zlib.error, EOFError) as error:
         raise CorruptError(f"{section}: cannot be unpacked ({error})") from error
-    if len(unpacked) != size or not complete:
+    if found != size or not complete:
         raise CorruptError(
-            f"{section}: unpacks to another size", expected=str(size), found=str(len(unpacked))
+            f"{section}: unpacks to another size", expected=str(size), found=str(found)
         )
-    return unpacked
+
+
+def _unlzma(packed: bytes, size: int) -> Iterator[bytes | None]:
+    """Give what comes out, and None at the end where the data does not end with it."""
+    decoder = lzma.LZMADecompressor(lzma.FORMAT_RAW, filters=[_lzma_filter(size, text=True)])
+    while not decoder.eof:
+        part = decoder.decompress(packed, max_length=_PART)
+        packed = b""
+        if not part and decoder.needs_input:
+            break
+        yield part
+    if not decoder.eof or decoder.unused_data:
+        yield None
+
+
+def _inflated(packed: bytes) -> Iterator[bytes | None]:
+    inflate = zlib.decompressobj(-15, zdict=_dictionary())
+    while not inflate.eof:
+        part = inflate.decompress(packed, _PART)
+        packed = inflate.unconsumed_tail
+        if not part and not packed:
+            break
+        yield part
+    if not inflate.eof or inflate.unused_data:
+        yield None
 
 
 def _lzma_filter(size: int, *, text: bool) -> dict[str, int]:

@@ -61,7 +61,7 @@ class Parameters:
     @classmethod
     def of(cls, data: bytes) -> Self:
         """Read the parameters of a file, or of what stands before its frames."""
-        processor, floats, *_, listed = _core.c3d_layout(data)
+        processor, floats, *_, listed = _core.c3d_layout(data, len(data))
         return cls(data, processor, floats, listed)
 
     def numbers(self, group: str, name: str) -> list[float]:

@@ -1,6 +1,6 @@
 """What a format is: everything that the rest of mocapress knows of a kind of motion file."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from mocapress.formats.layout import Layout
 from mocapress.formats.problems import Problem
+from mocapress.formats.rows import RowsOf
 from mocapress.motion import Clip, Column, Skeleton
+from mocapress.records import Ranges
 
 Near = Callable[[str, str], bytes | None]
 """Gives the contents of a file beside a motion file, None where there is none: ``near("_motion",
@@ -25,8 +27,17 @@ class StoredLayout(Protocol):
         """Id of the format."""
         ...
 
+    @property
+    def sizes(self) -> list[tuple[int, int]]:
+        """Give frames and columns of each stream."""
+        ...
+
     def join(self, streams: Sequence[NDArray[np.float64]], most_bytes: int = ...) -> bytes:
         """Give the file's bytes from the values of all streams; ``CorruptError`` as ``Layout``."""
+        ...
+
+    def pieces(self, rows: RowsOf, most_bytes: int = ...) -> Iterator[bytes]:
+        """Give the same, part after part, asking for rows in their order as they are printed."""
         ...
 
     def record(self) -> bytes:
@@ -44,6 +55,19 @@ class Split(NamedTuple):
     """Where the file departs from its format. What is no row is in the layout's tail."""
     stored: StoredLayout | None = None
     """The layout of a file that is no rows of text."""
+
+
+class LongSplit(NamedTuple):
+    """A file taken apart that is not held in memory as a whole."""
+
+    clip: Clip
+    """Its streams, without their frames."""
+    frames: tuple[int, ...]
+    """Of each stream."""
+    problems: tuple[Problem, ...]
+    stored: StoredLayout
+    parts: Callable[[], Iterator[Mapping[str, NDArray[np.float64]]]]
+    """Gives the rows of streams, some frames after the other."""
 
 
 def split_of(clip: Clip, layout: Layout, problems: Sequence[Problem], file: str | None) -> Split:
@@ -80,6 +104,10 @@ class Format:
     split: Callable[[bytes, Skeleton | None, str | None], Split] | None = None
     """Takes a file's bytes apart, given the skeleton of its companion and the file's name for
     messages. Raises ``FormatError`` when not a single frame can be read."""
+    split_long: Callable[[Ranges, str | None], LongSplit] | None = None
+    """Takes a file apart that is larger than is held at once, of the name given."""
+    outline: Callable[[Ranges, str | None], LongSplit] | None = None
+    """Does the same without looking at the frames; the layout does not print the file then."""
     read_skeleton: Callable[[bytes, str | None], Skeleton] | None = None
     """Reads a file that holds a skeleton and no motion; the name is for messages."""
     fit: Callable[[Clip], Clip] = _as_it_is

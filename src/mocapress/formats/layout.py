@@ -4,9 +4,9 @@ Taking a file apart is each format's own; here is what they share: templates of 
 that are not written as their column is, and the way back to bytes.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import compress
+from itertools import compress, islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +16,13 @@ from mocapress.errors import CorruptError
 from mocapress.formats.encodings import FileText, encoded
 from mocapress.formats.number_formats import SHORTEST, packed, unpacked
 from mocapress.formats.row_templates import Row, RowTemplate, Slot, templates_of
-from mocapress.formats.rows import Body
+from mocapress.formats.rows import Body, RowsOf, rows_of
 from mocapress.motion.clip import Clip
 from mocapress.motion.number_format import NumberFormat
 
 MOST_TEMPLATES = 64
+_PIECE = 2**16
+"""Numbers that are printed together."""
 # Of how many rows the texts are looked at to find formats.
 _SAMPLE = 48
 # A template that leaves fewer numbers than one in so many written otherwise is good enough.
@@ -73,22 +75,50 @@ class Layout:
                 expected=f"{len(self.assigned)} x {len(self.formats)}",
                 found=f"{values.shape[0]} x {values.shape[1]}",
             )
-        body: bytes = _core.print_rows(
-            np.ascontiguousarray(values),
-            self.counters,
-            self.assigned,
-            [template.as_tuple() for template in self.templates],
-            packed(self.formats),
-            self.cell_rows,
-            self.cell_slots,
-            list(self.cells),
-            list(self.raw_rows),
-            2 * most_bytes if self.encoding else most_bytes,
-        )
-        file = encoded(self.header + body + self.tail, self.encoding)
-        if len(file) > most_bytes:
-            raise CorruptError("the layout makes a longer file than announced")
-        return file
+        return b"".join(self.pieces(rows_of([values]), most_bytes))
+
+    def pieces(self, rows: RowsOf, most_bytes: int = 2**62) -> Iterator[bytes]:
+        """Give the file's bytes one part after the other, asking for rows as they are printed.
+
+        Raises
+        ------
+        CorruptError
+            When more than ``most_bytes`` would come out.
+
+        """
+        parts = self._parts(rows, 2 * most_bytes if self.encoding else most_bytes)
+        if self.encoding:
+            parts = iter((encoded(b"".join(parts), self.encoding),))
+        for part in parts:
+            most_bytes -= len(part)
+            if most_bytes < 0:
+                raise CorruptError("the layout makes a longer file than announced")
+            yield part
+
+    def _parts(self, rows: RowsOf, most_bytes: int) -> Iterator[bytes]:
+        yield self.header
+        step = max(_PIECE // max(len(self.formats), 1), 1)
+        templates = [template.as_tuple() for template in self.templates]
+        formats, raw = packed(self.formats), iter(self.raw_rows)
+        for first in range(0, len(self.assigned), step):
+            assigned = self.assigned[first : first + step]
+            last = first + len(assigned)
+            low, high = np.searchsorted(self.cell_rows, [first, last])
+            part: bytes = _core.print_rows(
+                np.ascontiguousarray(rows(0, first, last)),
+                self.counters[first:last],
+                assigned,
+                templates,
+                formats,
+                self.cell_rows[low:high] - np.uint64(first),
+                self.cell_slots[low:high],
+                list(self.cells[low:high]),
+                list(islice(raw, int((assigned < 0).sum()))),
+                most_bytes,
+            )
+            most_bytes = max(most_bytes - len(part), 0)
+            yield part
+        yield self.tail
 
     def rows(self, keep: NDArray[np.bool_]) -> "Layout":
         """Give the layout of those rows alone that are to be kept, (F,)."""

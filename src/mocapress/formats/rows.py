@@ -1,11 +1,20 @@
-"""The body of a motion file as a matrix."""
+"""The body of a motion file as a matrix; rows that are asked for when they are needed."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
+
+RowsOf = Callable[[int, int, int], NDArray[np.float64]]
+"""Gives rows [first, last) of a stream: by its place among the streams, first, last."""
+
+
+def rows_of(streams: Sequence[NDArray[np.float64]]) -> RowsOf:
+    """Give rows of streams that are held as a whole."""
+    return lambda stream, first, last: streams[stream][first:last]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,10 +1,11 @@
 """Tables of numbers: CSV and TSV of any program, and OpenSim's MOT and STO."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -13,13 +14,11 @@ from numpy.typing import NDArray
 
 from mocapress.errors import FormatError
 from mocapress.formats.bids import channels_beside
-from mocapress.formats.contract import Format, Near, Split
+from mocapress.formats.contract import Format, LongSplit, Near, Split
 from mocapress.formats.layout import NO_ROWS
 from mocapress.formats.printed_floats import as_printed
 from mocapress.formats.problems import BYTES_AFTER_END, UNREADABLE_ROWS, Problem
 from mocapress.formats.table_layout import (
-    MISSING,
-    NUMBER,
     NUMBERS,
     SAME,
     SERIES,
@@ -27,18 +26,27 @@ from mocapress.formats.table_layout import (
     TableLayout,
     read_layout,
     series,
+)
+from mocapress.formats.table_splitting import (
+    MISSING,
+    NUMBER,
+    find_layout,
+    numbers_of,
     split_table,
 )
 from mocapress.formats.table_writing import with_frames, write_csv
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.columns import distinct, numbered_columns
 from mocapress.motion.frame_time import FrameTime
+from mocapress.records import Held, Ranges
 
 CSV = "csv"
 """Id of the format."""
 TABLE = "table"
 """Name of the stream that holds the columns of numbers."""
 _ROWS_AT_LEAST = 3
+_MOST_NAMED = 2**12
+"""Lines, and cells of a column, that are looked at to name those that are broken."""
 _TIME = re.compile(r"(time|timestamp|t|seconds|time *\(?s(econds)?\)?)\Z", re.IGNORECASE)
 
 Values = NDArray[np.float64]
@@ -53,19 +61,41 @@ def split(data: bytes, _skeleton: Skeleton | None, file: str | None, *, kind: st
         When it is no table of numbers.
 
     """
-    layout, values, _ = split_table(data, kind, file)
+    layout, values = split_table(Held(data), kind, file)
+    return Split(_clip(layout, values, file), NO_ROWS, tuple(problems_of(layout)), layout)
+
+
+def split_long(file: Ranges, name: str | None, *, kind: str = CSV) -> LongSplit:
+    """Take a table apart, a run of rows at a time.
+
+    Raises
+    ------
+    FormatError
+        When it is no table of numbers.
+
+    """
+    layout = find_layout(file, kind, name)
+    clip = _clip(layout, np.empty((0, layout.sizes[0][1])), name)
+
+    def parts() -> Iterator[dict[str, Values]]:
+        return ({TABLE: values} for values in numbers_of(file, layout))
+
+    return LongSplit(clip, (layout.rows,), tuple(problems_of(layout)), layout, parts)
+
+
+def _clip(layout: TableLayout, values: Values, name: str | None) -> Clip:
     if not values.shape[1]:
-        raise FormatError("no column of numbers", file=file, expected="a table of numbers")
+        raise FormatError("no column of numbers", file=name, expected="a table of numbers")
     stream = Stream(values, numbered_columns(values.shape[1], ("v",)), time_of(layout))
-    clip = Clip({TABLE: stream}, None, Path(file).stem if file else "")
-    return Split(clip, NO_ROWS, tuple(problems_of(layout)), layout)
+    return Clip({TABLE: stream}, None, Path(name).stem if name else "")
 
 
 def problems_of(layout: TableLayout) -> list[Problem]:
     """Name rows that are left out, cells that are no numbers, and what stands behind the rows."""
     found = []
     first = layout.header.count(b"\n") + 1
-    broken = [(place, line) for place, line in layout.verbatim.items() if line.strip()]
+    lines = list(islice(layout.verbatim.items(steps=False), _MOST_NAMED))
+    broken = [(place, line) for place, line in lines if line.strip()]
     if broken:
         place, line = min(broken)
         cells = line.count(layout.delimiter) + 1
@@ -75,13 +105,13 @@ def problems_of(layout: TableLayout) -> list[Problem]:
     odd = [
         (row, text)
         for column in layout.columns
-        for row, text in column.others.items()
         if column.kind == NUMBERS
-        and not (NUMBER.match(text.strip()) or MISSING.match(text.strip()))
+        for row, text in islice(column.others.items(steps=True), _MOST_NAMED)
+        if not (NUMBER.match(text.strip()) or MISSING.match(text.strip()))
     ]
     if odd:
         row, cell = min(odd)
-        at = first + row + sum(place <= row for place in layout.verbatim)
+        at = first + row + sum(place <= row for place, _ in lines)
         what = "a cell that is no number" + _and_more(len(odd))
         found.append(Problem.of(UNREADABLE_ROWS, what, at, None, "a number", repr(text_of(cell))))
     if layout.tail.strip():
@@ -90,7 +120,8 @@ def problems_of(layout: TableLayout) -> list[Problem]:
 
 
 def _and_more(count: int) -> str:
-    return f" (and {count - 1} more)" if count > 1 else ""
+    least = "at least " if count >= _MOST_NAMED else ""
+    return f" (and {least}{count - 1} more)" if count > 1 else ""
 
 
 def header_lines(layout: TableLayout) -> list[list[str]]:
@@ -144,11 +175,12 @@ def full_values(layout: TableLayout, values: Values) -> dict[int, Values]:
     for place, column in enumerate(layout.columns):
         if column.kind == NUMBERS:
             numbers = next(stored)
-            found[place] = numbers if column.others else as_printed(numbers, column.format)
+            found[place] = numbers if column.others.number else as_printed(numbers, column.format)
         elif column.kind == SAME:
             found[place] = np.full(len(values), _number(column.text))
         elif column.kind == SERIES and len(values) == layout.rows:
-            found[place] = series(column.first, column.step, layout.rows)
+            rows = np.arange(layout.rows, dtype=np.float64)
+            found[place] = series(column.first, column.step, rows)
     return found
 
 
@@ -203,10 +235,10 @@ def _recognised(head: bytes) -> bool:
         return False
     whole = head[: head.rfind(b"\n") + 1]
     try:
-        layout, values, _ = split_table(whole, CSV, None)
+        layout, values = split_table(Held(whole), CSV, None)
     except FormatError:
         return False
-    enough = layout.rows >= _ROWS_AT_LEAST and values.shape[1] > 1 and not layout.verbatim
+    enough = layout.rows >= _ROWS_AT_LEAST and values.shape[1] > 1 and not layout.verbatim.number
     return enough and layout.delimiter != b" "
 
 
@@ -216,6 +248,7 @@ FORMAT = Format(
     suffixes=(".csv", ".tsv", ".mot", ".sto"),
     recognises=_recognised,
     split=split,
+    split_long=split_long,
     fit=with_frames,
     write=write_csv,
     written=(".csv",),

@@ -28,12 +28,14 @@ def suggest_unit(skeleton: Skeleton) -> str | None:
     if skeleton.length_unit not in (None, 1.0):
         unit = CENTIMETRES_PER_INCH / skeleton.length_unit
         return f"1 unit is {unit:.4g} cm, as the ASF's length says"
-    size = figure_size(skeleton)
-    for name, centimetres in _UNITS:
+    return named_unit(figure_size(skeleton), "the figure measures")
+
+
+def named_unit(size: float, said: str) -> str | None:
+    """Name the unit in which a figure of such a size is a human one; None where there is none."""
+    for name, centimetres in (*_UNITS, ("CMU's, 5.644 cm", CMU)):
         if _is_figure(size * centimetres):
-            return f"{name} (the figure measures {size:.4g})"
-    if _is_figure(size * CMU):
-        return f"CMU's, 5.644 cm (the figure measures {size:.4g})"
+            return f"{name} ({said} {size:.4g})"
     return None
 
 

@@ -93,8 +93,8 @@ def write_files(
 
     def work(job: "Job") -> dict[str, Any]:
         assert job.target is not None
-        job.outputs[job.target] = read(job)
-        return {"output": str(job.target), "bytes": len(job.outputs[job.target])}
+        data = job.outputs[job.target] = read(job)
+        return {"output": str(job.target), "bytes": len(data)}
 
     run(
         files,

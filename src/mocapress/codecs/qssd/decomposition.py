@@ -79,7 +79,7 @@ class Products:
         """Code frames by Algorithm 2."""
         return Weights(
             *_core.code_by_products(
-                turns, self._importance(turns), dictionary, most, tolerance, self.sort
+                turns, self._importance(turns), dictionary, most, tolerance, 0.0, self.sort
             )
         )
 
