@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import sqlite3
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from running import mocapress
 
 import mocapress as mp
 from mocapress.codecs.mrpa import together
+from mocapress.container.chunks import read_list
 from mocapress.errors import CorruptError, MotionWarning, VerificationError
 from mocapress.library import Library, open_library
 
@@ -59,6 +61,13 @@ def sound(library: Library, files: dict[str, bytes]) -> None:
     assert not library.check()
 
 
+def stored_chunks(connection: sqlite3.Connection) -> Iterator[tuple[int, int, int, bytes]]:
+    """Give clip, first frame, frames and section of each chunk."""
+    for clip, listed, sections in connection.execute("SELECT clip, list, sections FROM chunks"):
+        for entry in read_list(listed, len(sections)):
+            yield clip, entry.first, entry.frames, sections[entry.begin : entry.end]
+
+
 def needs(library: Library) -> list[tuple[str, str]]:
     """Who needs frames of whom."""
     with library.db.reading() as connection:
@@ -92,7 +101,7 @@ def test_no_chunk_has_more_above_it_than_allowed(
         links = connection.execute(
             "SELECT needs.clip, needs.digest, source, source_first, frames FROM needs"
         ).fetchall()
-        chunks = connection.execute("SELECT clip, first, frames, section FROM chunks").fetchall()
+        chunks = [*stored_chunks(connection)]
 
     def above(clip: int, section: bytes) -> int:
         own = [link for link in links if link[0] == clip and link[1] in section]
@@ -156,10 +165,10 @@ def test_a_removed_clip_hands_its_chunks_over_with_what_they_need(
 def test_adding_changes_no_other_clip(library: Library, files: dict[str, bytes]) -> None:
     library.recompress_together(list(files), "mrpa")
     with library.db.reading() as connection:
-        before = connection.execute("SELECT id, section FROM chunks ORDER BY id").fetchall()
+        before = connection.execute("SELECT * FROM chunks ORDER BY clip").fetchall()
     library.add(files["a.bvh"].replace(b"0.008", b"0.009"), "e.bvh", codec="mrpa")
     with library.db.reading() as connection:
-        after = connection.execute("SELECT id, section FROM chunks ORDER BY id").fetchall()
+        after = connection.execute("SELECT * FROM chunks ORDER BY clip").fetchall()
     assert after[: len(before)] == before
     sound(library, files)
     library.close()
@@ -278,9 +287,15 @@ def test_needs_in_a_circle_end(library: Library, files: dict[str, bytes]) -> Non
     path = library.path
     library.close()
     with sqlite3.connect(path) as connection:
-        clip, first, frames = connection.execute(
-            "SELECT clip, first, frames FROM chunks WHERE flags & 4 LIMIT 1"
-        ).fetchone()
+        clip = connection.execute("SELECT min(clip) FROM needs").fetchone()[0]
+        first, frames = next(
+            (entry.first, entry.frames)
+            for listed, size in connection.execute(
+                "SELECT list, length(sections) FROM chunks WHERE clip = ?", [clip]
+            )
+            for entry in read_list(listed, size)
+            if entry.dependent
+        )
         connection.execute(
             "UPDATE needs SET source = ?, source_first = ?, frames = ?", (clip, first, frames)
         )
