@@ -12,6 +12,7 @@ import argparse
 import filecmp
 import json
 import os
+import re
 import struct
 import sys
 import tempfile
@@ -25,6 +26,12 @@ from numpy.typing import NDArray
 CHANNELS, POINTS, ANALOG = 24, 60, 12
 ROWS = 4096
 COMMAND = "from mocapress.cli import main; main()"
+# At its end a process says what memory it took. What `wait4` says counts the memory of the process
+# that started it, too.
+TELL = """
+import atexit, os
+atexit.register(lambda: os.write(9, open("/proc/self/status", "rb").read()))
+"""
 MEASURED = """
 import sys, time
 import mocapress as mp
@@ -109,20 +116,26 @@ class Ran(NamedTuple):
 
 def run(*words: object, code: str = COMMAND) -> Ran:
     """Run Python code in a process of its own."""
-    with tempfile.TemporaryFile() as output:
-        command = [sys.executable, "-c", code, *map(str, words)]
+    with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as told:
+        command = [sys.executable, "-c", TELL + code, *map(str, words)]
         child = os.posix_spawn(
             sys.executable,
             command,
             os.environ,
-            file_actions=[(os.POSIX_SPAWN_DUP2, output.fileno(), 1)],
+            file_actions=[
+                (os.POSIX_SPAWN_DUP2, output.fileno(), 1),
+                (os.POSIX_SPAWN_DUP2, told.fileno(), 9),
+            ],
         )
         _, status, used = os.wait4(child, 0)
         output.seek(0)
         text = output.read().decode()
+        told.seek(0)
+        status_lines = told.read().decode()
     if status:
         raise SystemExit(f"{words}: ended with {os.waitstatus_to_exitcode(status)}")
-    return Ran(text, used.ru_maxrss * 1024, used.ru_utime + used.ru_stime)
+    (peak,) = re.findall(r"^VmHWM:\s*(\d+) kB", status_lines, re.MULTILINE)
+    return Ran(text, int(peak) * 1024, used.ru_utime + used.ru_stime)
 
 
 def work_on(path: Path, level: int) -> Iterator[tuple[str, Ran]]:

@@ -9,9 +9,8 @@ RANDOM = np.random.default_rng(7)
 def markers(frames: int = 150) -> NDArray[np.float64]:
     """Give the coordinates of four markers, (F, 12); the second is missing for a while."""
     time = np.arange(frames)[:, None]
-    places: NDArray[np.float64] = 900 * np.sin(0.05 * time + np.arange(12)) + RANDOM.normal(
-        size=(frames, 12)
-    )
+    noise = np.random.default_rng(frames).normal(size=(frames, 12))
+    places: NDArray[np.float64] = 900 * np.sin(0.05 * time + np.arange(12)) + noise
     places[20:40, 3:6] = np.nan
     return places
 
