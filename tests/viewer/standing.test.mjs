@@ -142,7 +142,7 @@ test("a clip that no memory can hold is refused before anything is made", async 
   const clip = figure([1, 1]);
   await assert.rejects(
     placed({ ...clip, frames: 1e7 }),
-    /too many frames and joints.*found 10000000 x 6/,
+    /too many frames and points.*found 10000000 x 6/,
   );
   const empty = await placed({ ...clip, frames: 0 });
   assert.throws(() => new Take(empty), /no frames/);
