@@ -1,6 +1,5 @@
 """The general-purpose way, for what is not motion or repeats itself."""
 
-import hashlib
 from collections.abc import Mapping
 
 from mocapress.api.clips import stored_name
@@ -11,10 +10,10 @@ from mocapress.source import Source
 def compress_plain(source: Source, notes: Mapping[str, str]) -> bytes:
     """Compress a file, whatever it is."""
     data = source.data
-    name, digest = stored_name(source.name), hashlib.sha256(data).digest()
+    name = stored_name(source.name)
     parts: list[bytes] = []
     writer = MczWriter(parts.append)
-    writer.original(Original("", name, len(data), digest, (), pack(data, hard=True)))
+    writer.original(Original("", name, len(data), source.digest, (), pack(data, hard=True)))
     if notes:
         writer.notes(notes)
     writer.end()

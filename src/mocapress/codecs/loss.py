@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from mocapress.codecs.contract import Codec
 from mocapress.errors import VerificationError
 from mocapress.motion import Clip
+from mocapress.motion.comparing import errors_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,11 +25,8 @@ class Loss:
     def of(cls, original: NDArray[np.float64], decoded: NDArray[np.float64]) -> Self:
         """Measure the loss of (F, C) values."""
         finite = np.isfinite(original)
-        same = (original == decoded) | (np.isnan(original) & np.isnan(decoded))
-        with np.errstate(invalid="ignore", over="ignore"):
-            errors = np.abs(original - decoded)
-            errors[same] = 0
-            errors[~finite & ~same | np.isnan(errors)] = np.inf
+        errors = errors_of(original, decoded)
+        with np.errstate(over="ignore"):
             squares = errors[finite] ** 2
             mean = float(squares.mean()) if squares.size else 0.0
         largest = errors.max(axis=0, initial=0)

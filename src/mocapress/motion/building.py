@@ -1,7 +1,6 @@
 """Clips from arrays, in one call, and arrays with names from clips."""
 
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +10,7 @@ from mocapress.errors import ParameterError
 from mocapress.motion.clip import Clip, Column, Stream
 from mocapress.motion.columns import named_columns, skeleton_columns
 from mocapress.motion.convert import zyx_degrees
-from mocapress.motion.frame_time import FrameTime
+from mocapress.motion.frame_time import FrameTime, of_rate
 from mocapress.motion.kinematics import Array
 from mocapress.motion.markers import POINTS
 from mocapress.motion.skeleton import Joint, Skeleton
@@ -46,7 +45,7 @@ def from_array(
 
     """
     array = _shaped(values, "values", (None, len(names)))
-    return Clip.of(array, named_columns(names), _frame_time(fps), name=name)
+    return Clip.of(array, named_columns(names), _optional(fps), name=name)
 
 
 def from_positions(
@@ -89,7 +88,7 @@ def from_positions(
             for axis in "xyz"
         )
         flat = places.reshape(frames, -1)
-        return Clip({POINTS: Stream(flat, columns, _frame_time(fps))}, name=name)
+        return Clip({POINTS: Stream(flat, columns, _optional(fps))}, name=name)
     _refuse_bad(parents, len(names))
     moved = places.copy()
     for j, parent in enumerate(parents):
@@ -101,7 +100,7 @@ def from_positions(
     )
     skeleton = Skeleton(joints)
     columns = skeleton_columns(skeleton)
-    return Clip.of(moved.reshape(frames, -1), columns, _frame_time(fps), skeleton, name)
+    return Clip.of(moved.reshape(frames, -1), columns, _optional(fps), skeleton, name)
 
 
 def from_quaternions(
@@ -160,7 +159,7 @@ def from_quaternions(
     skeleton = Skeleton(joints)
     angles = zyx_degrees(turns / lengths[..., None]).reshape(len(turns), -1)
     values = np.hstack([_shaped(placed, "root", (len(turns), 3)), angles])
-    return Clip.of(values, skeleton_columns(skeleton), _frame_time(fps), skeleton, name)
+    return Clip.of(values, skeleton_columns(skeleton), _optional(fps), skeleton, name)
 
 
 def to_dataframe(clip: Clip) -> "pd.DataFrame":
@@ -233,9 +232,5 @@ def _refuse_bad(parents: Sequence[int], count: int) -> None:
             )
 
 
-def _frame_time(fps: float | None) -> FrameTime:
-    if fps is None:
-        return None
-    if not 0 < fps < float("inf"):
-        raise ParameterError("fps", expected="a number above 0", found=str(fps))
-    return 1 / Fraction(str(fps))
+def _optional(fps: float | None) -> FrameTime:
+    return None if fps is None else of_rate(fps)

@@ -54,11 +54,8 @@ def compare(first: Clip, second: Clip) -> Difference:
     if first.frames != second.frames:
         raise ParameterError("frames", expected=str(first.frames), found=str(second.frames))
     a, b = first.values, second.values
-    same = (a == b) | (np.isnan(a) & np.isnan(b))
-    with np.errstate(invalid="ignore", over="ignore"):
-        errors = np.abs(a - b)
-        errors[same] = 0
-        errors[~same & ~(np.isfinite(a) & np.isfinite(b))] = np.inf
+    errors = errors_of(a, b)
+    with np.errstate(over="ignore"):
         square = float(np.square(errors).mean()) if errors.size else 0.0
         psnr = float(-10 * np.log10(square)) if square else float("inf")
     joints: tuple[str, ...] = ()
@@ -75,6 +72,16 @@ def compare(first: Clip, second: Clip) -> Difference:
         None if distances is None else distances.max(axis=0, initial=0),
         None if distances is None else _mean(distances),
     )
+
+
+def errors_of(original: Array, decoded: Array) -> Array:
+    """Give the errors of values, 0 or above: infinite where one of two is not finite."""
+    same = (original == decoded) | (np.isnan(original) & np.isnan(decoded))
+    with np.errstate(invalid="ignore", over="ignore"):
+        errors: Array = np.abs(original - decoded)
+    errors[same] = 0
+    errors[~same & ~(np.isfinite(original) & np.isfinite(decoded))] = np.inf
+    return errors
 
 
 def _mean(errors: Array) -> Array:

@@ -6,9 +6,10 @@ from fractions import Fraction
 
 import numpy as np
 
-from mocapress.errors import MocapressError, MotionWarning, ParameterError, UnsupportedError
+from mocapress.errors import MocapressError, MotionWarning, UnsupportedError
 from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton
 from mocapress.motion.columns import skeleton_columns
+from mocapress.motion.frame_time import of_rate
 from mocapress.motion.kinematics import Array, local_rotations, translations
 from mocapress.motion.number_format import NumberKind
 from mocapress.motion.skeleton import Vec3
@@ -37,9 +38,7 @@ def with_rate(clip: Clip, fps: float | None = None, *, needed: bool = False) -> 
 
     """
     if fps is not None:
-        if not 0 < fps < float("inf"):
-            raise ParameterError("fps", expected="a number above 0", found=str(fps))
-        return _at_rate(clip, 1 / Fraction(str(fps)))
+        return _at_rate(clip, of_rate(fps))
     if clip.frame_time or not needed:
         return clip
     what = (

@@ -11,6 +11,7 @@ import numpy as np
 from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.motion.clip import Clip, Column, Stream
 from mocapress.motion.convert import with_rate
+from mocapress.motion.frame_time import of_rate
 from mocapress.motion.kinematics import Array
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3
 
@@ -119,11 +120,10 @@ def resample(clip: Clip, fps: float) -> Clip:
         When the clip's own rate is not known; ``mp.retime`` states it.
 
     """
-    if not 0 < fps < float("inf"):
-        raise ParameterError("fps", expected="a number above 0", found=str(fps))
+    frame_time = of_rate(fps)
     if clip.frame_time is None:
         raise UnsupportedError("the sampling rate of the clip is not known")
-    step = float(1 / Fraction(str(fps)) / Fraction(clip.frame_time))
+    step = float(frame_time / Fraction(clip.frame_time))
     count = int((clip.frames - 1) / step + _WHOLE) + 1 if clip.frames else 0
     at: Array = np.arange(count, dtype=np.float64) * np.float64(step)
     whole = np.abs(at - np.round(at)) < _WHOLE
@@ -135,7 +135,7 @@ def resample(clip: Clip, fps: float) -> Clip:
     for columns in _turning(clip):
         values[:, columns] = _slerped(clip, columns, at, values)
     values[whole] = clip.values[before[whole]]
-    return replace(clip, streams=_only_main(clip)).with_frames(values, 1 / Fraction(str(fps)))
+    return replace(clip, streams=_only_main(clip)).with_frames(values, frame_time)
 
 
 def _slerped(clip: Clip, columns: list[int], at: Array, straight: Array) -> Array:

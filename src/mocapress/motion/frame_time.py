@@ -3,8 +3,24 @@
 from decimal import Decimal, localcontext
 from fractions import Fraction
 
+from mocapress.errors import ParameterError
+
 FrameTime = Decimal | Fraction | None
 """Seconds per frame, exactly; None where the source does not say."""
+
+
+def of_rate(fps: float) -> Fraction:
+    """Give the frame time of a rate in frames per second, which counts as the decimal it prints as.
+
+    Raises
+    ------
+    ParameterError
+        When it is no number above 0.
+
+    """
+    if not 0 < fps < float("inf"):
+        raise ParameterError("fps", expected="a number above 0", found=str(fps))
+    return 1 / Fraction(str(fps))
 
 
 def decimal_seconds(frame_time: Decimal | Fraction) -> Decimal:
