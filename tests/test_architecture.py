@@ -23,6 +23,7 @@ ROWS = [
     {"library"},
     {"describe", "viewer", "arrays"},
     {"cli"},
+    {"__main__"},
 ]
 HEIGHT = {box: row for row, boxes in enumerate(ROWS) for box in boxes}
 
