@@ -20,6 +20,7 @@ ROWS = [
     {"container"},
     {"models"},
     {"api"},
+    {"search"},
     {"library"},
     {"describe", "viewer", "arrays"},
     {"cli"},
