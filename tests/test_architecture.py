@@ -20,9 +20,11 @@ ROWS = [
     {"container"},
     {"models"},
     {"api"},
+    {"search"},
     {"library"},
     {"describe", "viewer", "arrays"},
     {"cli"},
+    {"__main__"},
 ]
 HEIGHT = {box: row for row, boxes in enumerate(ROWS) for box in boxes}
 
