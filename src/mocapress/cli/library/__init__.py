@@ -14,6 +14,7 @@ from mocapress.cli.library.label import label
 from mocapress.cli.library.list_clips import list_clips
 from mocapress.cli.library.patterns import patterns
 from mocapress.cli.library.recompress import recompress
+from mocapress.cli.library.reindex import reindex
 from mocapress.cli.library.remove import remove
 from mocapress.cli.library.sheet import sheet
 from mocapress.cli.library.verify import verify
@@ -26,7 +27,7 @@ app = typer.Typer(
 app.command()(create)
 app.command()(add)
 app.command("list")(list_clips)
-for _command in (info, extract, cat, remove, label, verify, recompress, patterns, export):
+for _command in (info, extract, cat, remove, label, verify, recompress, reindex, patterns, export):
     app.command()(_command)
 app.command("import")(import_mcz)
 app.command()(check)

@@ -33,6 +33,9 @@ def add(
         list[str] | None,
         typer.Option("--label", help="Label for the clips; may be repeated.", metavar="LABEL"),
     ] = None,
+    index: Annotated[
+        bool, typer.Option("--index/--no-index", help="Whether to index clips for search at once.")
+    ] = True,
     jobs: Jobs = 1,
     json: Json = False,
     debug: Debug = False,
@@ -53,7 +56,7 @@ def add(
     found = Inputs(inputs, into.strip("/"), None if asf is None else str(asf))
     say_what_is_left_out(inputs, endings())
     with opened(file, "a", debug=debug) as library:
-        adder = library.adder(made, learned, overwrite=True)
+        adder = library.adder(made, learned, overwrite=True, indexed=index)
 
         add_all(
             library,

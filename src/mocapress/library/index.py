@@ -1,0 +1,107 @@
+"""Rows of a library's index for search by example: a signature and features for each clip."""
+
+import zlib
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from mocapress.errors import UnsupportedError
+from mocapress.library.rows import Connection
+from mocapress.library.schema import SEARCH, version_of
+from mocapress.motion import Clip
+from mocapress.search.body import body_of
+from mocapress.search.index import VERSION, Entry, entry_of
+
+NOTHING = Entry(b"", b"", 0)
+"""Of a clip that has no body to be searched; kept, so that nobody tries again."""
+
+
+class Kept(NamedTuple):
+    """What the index has of a clip."""
+
+    clip: int
+    signature: bytes | None
+    """None where there is none, or it is damaged or of another version; empty as ``NOTHING``."""
+
+
+def made_of(clip: Clip) -> Entry:
+    """Index a clip; one without frames or joints of a body gives ``NOTHING``."""
+    try:
+        return entry_of(body_of(clip))
+    except UnsupportedError:
+        return NOTHING
+
+
+def write(connection: Connection, clip: int, entry: Entry) -> None:
+    """Put an entry in the place of what the index has of a clip, if the clip is still there."""
+    if connection.execute("SELECT 1 FROM clips WHERE id = ?", [clip]).fetchone() is None:
+        return
+    connection.execute(
+        "INSERT OR REPLACE INTO signatures VALUES(?, ?, ?, ?)",
+        (clip, VERSION, entry.signature, checksum(VERSION, entry.signature)),
+    )
+    connection.execute("DELETE FROM features WHERE clip = ?", [clip])
+    if not entry.signature:
+        return
+    connection.execute(
+        "INSERT INTO features VALUES(?, ?, ?, ?)",
+        (clip, entry.frames, entry.features, checksum(entry.frames, entry.features)),
+    )
+
+
+def checksum(number: int, data: bytes) -> int:
+    """Give the checksum of a row of the index."""
+    return zlib.crc32(number.to_bytes(8, "little", signed=True) + data)
+
+
+def signatures(connection: Connection) -> list[Kept]:
+    """Give what the index has of all clips that have frames, in the order of ids."""
+    if version_of(connection) < SEARCH:
+        rows = connection.execute("SELECT id FROM clips WHERE frames > 0 ORDER BY id")
+        return [Kept(clip, None) for (clip,) in rows]
+    rows = connection.execute(
+        "SELECT id, version, signature, signatures.checksum FROM clips "
+        "LEFT JOIN signatures ON clip = id WHERE frames > 0 ORDER BY id"
+    )
+    return [
+        Kept(clip, signature if version == VERSION and is_sound(VERSION, signature, crc) else None)
+        for clip, version, signature, crc in rows
+    ]
+
+
+def is_sound(number: int, data: object, crc: int) -> bool:
+    """Say whether a row of the index has its checksum."""
+    return isinstance(data, bytes) and checksum(number, data) == crc
+
+
+def features(connection: Connection, clip: int) -> tuple[bytes, int] | None:
+    """Give the features of a clip and their frames; None if there are none or they are damaged."""
+    if version_of(connection) < SEARCH:
+        return None
+    row = connection.execute(
+        "SELECT frames, packed, checksum FROM features WHERE clip = ?", [clip]
+    ).fetchone()
+    return (row[1], row[0]) if row and is_sound(*row) else None
+
+
+def size_of(connection: Connection) -> tuple[int, int]:
+    """Give how many clips the index has, and the bytes of their signatures and features."""
+    if version_of(connection) < SEARCH:
+        return 0, 0
+    count, signed = connection.execute(
+        "SELECT count(*), coalesce(sum(length(signature)), 0) FROM signatures "
+        "WHERE length(signature)"
+    ).fetchone()
+    (packed,) = connection.execute("SELECT coalesce(sum(length(packed)), 0) FROM features").fetchone()
+    return count, signed + packed
+
+
+def damaged(connection: Connection) -> Iterator[tuple[int, str]]:
+    """Give the ids of clips of which the index is damaged, and what is."""
+    if version_of(connection) < SEARCH:
+        return
+    for table, number, data in (("signatures", "version", "signature"), ("features", "frames", "packed")):
+        for clip, *row in connection.execute(
+            f"SELECT clip, {number}, {data}, checksum FROM {table} ORDER BY clip"  # noqa: S608
+        ):
+            if not is_sound(*row):
+                yield clip, f"index for search: wrong checksum in {table}; library reindex mends it"

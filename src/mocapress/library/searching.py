@@ -1,0 +1,205 @@
+"""Search by example in a library: its index, read or made, and what is found by it."""
+
+import warnings
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+from mocapress.errors import (
+    FormatError,
+    MocapressError,
+    MotionWarning,
+    ParameterError,
+    UnsupportedError,
+)
+from mocapress.library import index
+from mocapress.library.clips import StoredClip, by_id
+from mocapress.motion import Clip
+from mocapress.motion.convert import DEFAULT_FPS
+from mocapress.search.body import body_of
+from mocapress.search.index import Entry, entry_of
+from mocapress.search.ranking import Hit, find, rank
+
+if TYPE_CHECKING:
+    from mocapress.library.library import Library
+    from mocapress.library.reading import Reading
+
+
+@dataclass(frozen=True, slots=True)
+class SearchHit:
+    """A clip that was found, or a stretch of one."""
+
+    name: str
+    start: int
+    """The first frame."""
+    end: int
+    """Behind the last frame."""
+    seconds: tuple[float, float]
+    """The same, from the clip's first frame on; of a clip without a rate, at 120 frames a second."""
+    score: float
+    """How far it is from the query: the smaller, the more alike. Only hits of one search compare."""
+    labels: tuple[str, ...]
+
+    @property
+    def frames(self) -> slice:
+        """What ``Library.load`` takes."""
+        return slice(self.start, self.end)
+
+
+class Searchable(NamedTuple):
+    """The index of all clips that can be searched, with what was made because it was missing."""
+
+    clips: list[int]
+    """Ids."""
+    signatures: list[bytes]
+    made: dict[int, Entry]
+    """By id, what is not kept in the library."""
+
+
+class Reindexed(NamedTuple):
+    """What was done to the index."""
+
+    clips: int
+    """That can be searched now."""
+    without: int
+    """Clips that have no skeleton, or none with the joints of a body."""
+    failed: list[MocapressError]
+    """Why clips could not be read."""
+
+
+def completed(library: "Reading") -> Searchable:
+    """Read the index of a library; what is missing is made, and kept where that is possible."""
+    with library.db.reading() as connection:
+        kept = index.signatures(connection)
+    found, made = dict(kept), dict[int, Entry]()
+    for clip, signature in kept:
+        if signature is not None:
+            continue
+        try:
+            entry = _made(library, clip)
+        except MocapressError:
+            continue  # damaged: `library check` tells
+        found[clip] = entry.signature
+        if library.db.writable:
+            with library.db.writing() as connection:
+                index.write(connection, clip, entry)
+        else:
+            made[clip] = entry
+    there = {clip: signature for clip, signature in found.items() if signature}
+    return Searchable([*there], [*there.values()], made)
+
+
+def reindex(library: "Library") -> Reindexed:
+    """Make the index of all clips anew."""
+    with library.db.reading() as connection:
+        clips = [clip for clip, _ in index.signatures(connection)]
+    counts, failed = {True: 0, False: 0}, list[MocapressError]()
+    for clip in clips:
+        try:
+            entry = _made(library, clip)
+        except MocapressError as error:
+            failed.append(error)
+            continue
+        with library.db.writing() as connection:
+            index.write(connection, clip, entry)
+        counts[bool(entry.signature)] += 1
+    return Reindexed(counts[True], counts[False], failed)
+
+
+def search(
+    library: "Reading",
+    query: StoredClip | Clip,
+    *,
+    frames: slice | None = None,
+    top: int = 20,
+    within: bool = False,
+    mirror: bool = False,
+) -> list[SearchHit]:
+    """Search a library; see ``Library.search``."""
+    if top < 1:
+        raise ParameterError("top", expected="at least 1", found=str(top))
+    searchable = library.searchable()
+    whole = isinstance(query, StoredClip) and frames is None and query.id in searchable.clips
+    own = searchable.clips.index(query.id) if isinstance(query, StoredClip) and whole else -1
+
+    def features(place: int) -> bytes:
+        return _entry(library, searchable, place).features
+
+    if own >= 0 and not mirror:
+        queries = [_entry(library, searchable, own)]
+    else:
+        queries = _queries(library, query, frames, mirror=mirror)
+    found: list[Hit] = []
+    for entry in queries:
+        if within:
+            everything = ((place, features(place)) for place in range(len(searchable.clips)))
+            found += find(entry, everything, top)
+        else:
+            found += rank(entry, searchable.signatures, features, top + (own >= 0))
+    best = _best(hit for hit in found if within or hit.place != own)
+    with library.db.reading() as connection:
+        return [
+            _told(by_id(library, connection, searchable.clips[hit.place]), hit, within=within)
+            for hit in best[:top]
+        ]
+
+
+def _queries(
+    library: "Reading", query: StoredClip | Clip, frames: slice | None, *, mirror: bool
+) -> list[Entry]:
+    """Give what a query is compared by: itself, and its mirror image if that is wanted."""
+    if isinstance(query, StoredClip):
+        clip = library.load(query, frames, strict=False)
+    else:
+        clip = query if frames is None else query[frames]
+    if frames is not None and not clip.frames:
+        raise ParameterError("no frames are left of the query", file=query.name or None)
+    try:
+        body = body_of(clip)
+    except UnsupportedError as error:
+        error.file = error.file or query.name or None
+        raise
+    return [entry_of(body), *([entry_of(body.mirrored())] if mirror else [])]
+
+
+def _entry(library: "Reading", searchable: Searchable, place: int) -> Entry:
+    """Give what the index has of a clip, which is made anew where it is damaged."""
+    clip = searchable.clips[place]
+    if clip not in searchable.made:
+        with library.db.reading() as connection:
+            found = index.features(connection, clip)
+        if found is not None:
+            return Entry(searchable.signatures[place], *found)
+        searchable.made[clip] = _made(library, clip)
+    return searchable.made[clip]
+
+
+def _made(library: "Reading", clip: int) -> Entry:
+    """Index a clip of a library."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", MotionWarning)
+        try:
+            return index.made_of(library.load(clip, strict=False))
+        except (FormatError, UnsupportedError):  # no motion, as far as can be read
+            return index.NOTHING
+
+
+def _best(hits: Iterable[Hit]) -> list[Hit]:
+    """Sort hits; of those of a query and of its mirror image that overlap the better one stays."""
+    kept: dict[int, list[Hit]] = {}
+    best = []
+    for hit in sorted(hits, key=lambda hit: hit.score):
+        others = kept.setdefault(hit.place, [])
+        if not any(hit.start < other.end and other.start < hit.end for other in others):
+            others.append(hit)
+            best.append(hit)
+    return best
+
+
+def _told(clip: StoredClip, hit: Hit, *, within: bool) -> SearchHit:
+    time = clip.frame_time or 1 / DEFAULT_FPS
+    start, end = 0, clip.frames
+    if within:
+        start = min(round(hit.start / time), clip.frames - 1)
+        end = min(max(round(hit.end / time), start + 1), clip.frames)
+    return SearchHit(clip.name, start, end, (start * time, end * time), hit.score, clip.labels)
