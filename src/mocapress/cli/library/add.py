@@ -58,7 +58,7 @@ def add(
         from mocapress.cli.library.shards import add_shards
 
         if asf is not None:
-            usage("--asf: a sharded library takes the skeletons that lie beside the files")
+            usage("a sharded library takes the skeletons that lie beside the files, no other")
         with opened(file, "a", debug=debug) as library:
             add_shards(
                 sharded(library, cluster),
