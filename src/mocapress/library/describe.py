@@ -28,7 +28,7 @@ def describe_library(library: Library) -> dict[str, Any]:
             )
         )
         searchable, index_bytes = index.size_of(connection)
-    size = library.path.stat().st_size
+    size = library.stored_bytes
     return {
         "clips": clips,
         "formats": ", ".join(f"{number} {kind or 'other'}" for kind, number in kinds.items())
@@ -41,7 +41,7 @@ def describe_library(library: Library) -> dict[str, Any]:
         "library_bytes": size,
         "ratio": raw / size if raw else None,
         "skeletons": skeletons,
-        "texts": texts,
+        "texts": texts or None,
         "companions": companions,
         "models": models or None,
         "searchable": searchable,

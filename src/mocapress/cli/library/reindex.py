@@ -14,7 +14,7 @@ def reindex(file: File, models: Models = None, debug: Debug = False) -> None:
     with opened(file, "a", debug=debug, models=open_models(models or [])) as library:
         done = library.reindex()
     for error in done.failed:
-        say(message(error, error.file or str(file)))
+        say(message(error, error.file or file))
     without = f", {done.without} without a body to be searched" if done.without else ""
     print(f"{file}: {done.clips} clips indexed{without}")
     if done.failed:
