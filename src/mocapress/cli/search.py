@@ -92,15 +92,16 @@ def search(
 
 def _clip(library: "Library", query: str, asf: Path | None) -> "Clip | StoredClip":
     from mocapress import api
-    from mocapress.cli.batch import is_folder
+    from mocapress.cli.batch import Job, is_folder
     from mocapress.cli.models import places_for
-    from mocapress.cli.batch import Job
     from mocapress.errors import ParameterError
 
     path = Path(query)
     if path.exists() and not is_folder(path):
         job = Job(path, path.parent)
-        return api.read_source(job.opened(), asf, models=places_for(job, library.models), strict=False)
+        return api.read_source(
+            job.opened(), asf, models=places_for(job, library.models), strict=False
+        )
     if query not in library:
         raise ParameterError("neither a file nor a clip of the library", file=query)
     return library[query]

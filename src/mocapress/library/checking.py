@@ -10,8 +10,8 @@ from mocapress.api.checking import verify_opened
 from mocapress.container import unpack
 from mocapress.container.limits import most_companions
 from mocapress.errors import CorruptError, MissingModelError, MocapressError
-from mocapress.library import index
 from mocapress.library.database import Database
+from mocapress.library.index import damaged as damaged_index
 from mocapress.library.opened import OpenedClip
 from mocapress.library.rows import RUN_COLUMNS, Connection, Run, hash_of
 from mocapress.library.stored import StoredMcz
@@ -197,7 +197,7 @@ def _companions(connection: Connection) -> Iterator[Fault]:
 
 def _index(connection: Connection, names: dict[int, str]) -> Iterator[Fault]:
     try:
-        for clip, what in index.damaged(connection):
+        for clip, what in damaged_index(connection):
             yield Fault(names.get(clip, ""), what)
     except sqlite3.DatabaseError as error:
         yield Fault("", f"the index for search cannot be read ({error})")

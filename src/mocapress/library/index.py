@@ -11,7 +11,7 @@ from mocapress.motion import Clip
 from mocapress.search.body import body_of
 from mocapress.search.index import VERSION, Entry, entry_of
 
-NOTHING = Entry(b"", b"", 0)
+NOTHING = Entry(b"", b"")
 """Of a clip that has no body to be searched; kept, so that nobody tries again."""
 
 
@@ -43,14 +43,14 @@ def write(connection: Connection, clip: int, entry: Entry) -> None:
     if not entry.signature:
         return
     connection.execute(
-        "INSERT INTO features VALUES(?, ?, ?, ?)",
-        (clip, entry.frames, entry.features, checksum(entry.frames, entry.features)),
+        "INSERT INTO features VALUES(?, ?, ?)",
+        (clip, entry.features, checksum(VERSION, entry.features)),
     )
 
 
-def checksum(number: int, data: bytes) -> int:
+def checksum(version: int, data: bytes) -> int:
     """Give the checksum of a row of the index."""
-    return zlib.crc32(number.to_bytes(8, "little", signed=True) + data)
+    return zlib.crc32(version.to_bytes(8, "little", signed=True) + data)
 
 
 def signatures(connection: Connection) -> list[Kept]:
@@ -68,19 +68,19 @@ def signatures(connection: Connection) -> list[Kept]:
     ]
 
 
-def is_sound(number: int, data: object, crc: int) -> bool:
+def is_sound(version: int, data: object, crc: int) -> bool:
     """Say whether a row of the index has its checksum."""
-    return isinstance(data, bytes) and checksum(number, data) == crc
+    return isinstance(data, bytes) and checksum(version, data) == crc
 
 
-def features(connection: Connection, clip: int) -> tuple[bytes, int] | None:
-    """Give the features of a clip and their frames; None if there are none or they are damaged."""
+def features(connection: Connection, clip: int) -> bytes | None:
+    """Give the features of a clip; None if there are none of this version or they are damaged."""
     if version_of(connection) < SEARCH:
         return None
     row = connection.execute(
-        "SELECT frames, packed, checksum FROM features WHERE clip = ?", [clip]
+        "SELECT rows, checksum FROM features WHERE clip = ?", [clip]
     ).fetchone()
-    return (row[1], row[0]) if row and is_sound(*row) else None
+    return row[0] if row and is_sound(VERSION, *row) else None
 
 
 def size_of(connection: Connection) -> tuple[int, int]:
@@ -91,17 +91,19 @@ def size_of(connection: Connection) -> tuple[int, int]:
         "SELECT count(*), coalesce(sum(length(signature)), 0) FROM signatures "
         "WHERE length(signature)"
     ).fetchone()
-    (packed,) = connection.execute("SELECT coalesce(sum(length(packed)), 0) FROM features").fetchone()
-    return count, signed + packed
+    rows = connection.execute("SELECT coalesce(sum(length(rows)), 0) FROM features").fetchone()[0]
+    return count, signed + rows
 
 
 def damaged(connection: Connection) -> Iterator[tuple[int, str]]:
     """Give the ids of clips of which the index is damaged, and what is."""
     if version_of(connection) < SEARCH:
         return
-    for table, number, data in (("signatures", "version", "signature"), ("features", "frames", "packed")):
-        for clip, *row in connection.execute(
-            f"SELECT clip, {number}, {data}, checksum FROM {table} ORDER BY clip"  # noqa: S608
-        ):
-            if not is_sound(*row):
-                yield clip, f"index for search: wrong checksum in {table}; library reindex mends it"
+    for clip, version, signature, crc, rows, of_rows in connection.execute(
+        "SELECT signatures.clip, version, signature, signatures.checksum, rows, features.checksum "
+        "FROM signatures LEFT JOIN features ON features.clip = signatures.clip"
+    ):
+        if not is_sound(version, signature, crc):
+            yield clip, "the signature for search is damaged; library reindex makes it anew"
+        elif signature and not is_sound(version, rows, of_rows):
+            yield clip, "the features for search are damaged; library reindex makes them anew"

@@ -28,6 +28,7 @@ from mocapress.models import Place, load_model
 from mocapress.motion import Clip, Skeleton
 from mocapress.source import Named, Source
 
+
 def open_library(
     path: str | Path, mode: str = READ, *, wait: float = WAIT, models: Sequence[Place] = ()
 ) -> "Library":

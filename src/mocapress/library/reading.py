@@ -195,11 +195,10 @@ class Reading:
             When there is no such clip, or no frames of it are asked for.
 
         """
-        clip = query
         if not isinstance(query, Clip):
             with self.db.reading() as connection:
-                clip = by_id(self, connection, self._id(query))
-        return search(self, clip, frames=frames, top=top, within=within, mirror=mirror)
+                query = by_id(self, connection, self._id(query))
+        return search(self, query, frames=frames, top=top, within=within, mirror=mirror)
 
     def clips(
         self,

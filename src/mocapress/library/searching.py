@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from mocapress.library.library import Library
     from mocapress.library.reading import Reading
 
+_SHARED = 0.5
+"""Part of the shorter of two stretches of a clip that both may have."""
+
 
 @dataclass(frozen=True, slots=True)
 class SearchHit:
@@ -35,9 +38,9 @@ class SearchHit:
     end: int
     """Behind the last frame."""
     seconds: tuple[float, float]
-    """The same, from the clip's first frame on; of a clip without a rate, at 120 frames a second."""
+    """The same, from the first frame on; of a clip without a rate, at 120 frames a second."""
     score: float
-    """How far it is from the query: the smaller, the more alike. Only hits of one search compare."""
+    """How far it is from the query: the smaller, the more alike, among hits of one search."""
     labels: tuple[str, ...]
 
     @property
@@ -169,7 +172,7 @@ def _entry(library: "Reading", searchable: Searchable, place: int) -> Entry:
         with library.db.reading() as connection:
             found = index.features(connection, clip)
         if found is not None:
-            return Entry(searchable.signatures[place], *found)
+            return Entry(searchable.signatures[place], found)
         searchable.made[clip] = _made(library, clip)
     return searchable.made[clip]
 
@@ -185,15 +188,21 @@ def _made(library: "Reading", clip: int) -> Entry:
 
 
 def _best(hits: Iterable[Hit]) -> list[Hit]:
-    """Sort hits; of those of a query and of its mirror image that overlap the better one stays."""
+    """Sort hits; of a query and its mirror image, only the better one is found in a place."""
     kept: dict[int, list[Hit]] = {}
     best = []
     for hit in sorted(hits, key=lambda hit: hit.score):
         others = kept.setdefault(hit.place, [])
-        if not any(hit.start < other.end and other.start < hit.end for other in others):
+        if not any(_share(hit, other) > _SHARED for other in others):
             others.append(hit)
             best.append(hit)
     return best
+
+
+def _share(one: Hit, other: Hit) -> float:
+    """Give the part of the shorter of two stretches that both have."""
+    both = min(one.end, other.end) - max(one.start, other.start)
+    return both / max(min(one.end - one.start, other.end - other.start), 1e-9)
 
 
 def _told(clip: StoredClip, hit: Hit, *, within: bool) -> SearchHit:

@@ -96,9 +96,7 @@ def tile_of(
     return Tile(clip.name, said, lambda count: _moments(library, clip, rows, count))
 
 
-def _moments(
-    library: Library, clip: StoredClip, rows: range, count: int
-) -> tuple[Clip, list[int]]:
+def _moments(library: Library, clip: StoredClip, rows: range, count: int) -> tuple[Clip, list[int]]:
     """Give a clip with moments of some rows in it, and where they are."""
     at = [rows[moment] for moment in figures.moments(len(rows), count)]
     if clip.frames <= _LONG or not at:

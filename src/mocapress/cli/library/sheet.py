@@ -8,6 +8,7 @@ import typer
 from mocapress.cli.library.opening import File, Label, Patterns, chosen, opened
 from mocapress.cli.options import Debug, Force
 
+
 def sheet(
     file: File,
     patterns: Patterns = None,
