@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mocapress.cli.library.opening import File, opened
-from mocapress.cli.options import Asf, Debug, Force, Json, Models
+from mocapress.cli.options import Asf, Debug, Force, Joints, Json, Models
 from mocapress.cli.selecting import Frames, Seconds, Time
 
 if TYPE_CHECKING:
@@ -52,6 +52,7 @@ def search(
         bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
     ] = True,
     asf: Asf = None,
+    joints: Joints = None,
     models: Models = None,
     force: Force = False,
     json: Json = False,
@@ -67,6 +68,7 @@ def search(
     from mocapress.cli.models import open_models
     from mocapress.cli.pictures import check_kind
     from mocapress.cli.report import say
+    from mocapress.search.joint_names import read_mapping
     from mocapress.storage import check_targets
 
     if frames is not None and time is not None:
@@ -81,7 +83,14 @@ def search(
         missing = library.lacking()
         if missing:
             say(f"{file}: {missing} clips have no index yet; library reindex makes and keeps it")
-        hits = library.search(clip, frames=stretch, top=top, within=within, mirror=mirror)
+        hits = library.search(
+            clip,
+            frames=stretch,
+            top=top,
+            within=within,
+            mirror=mirror,
+            joints=None if joints is None else read_mapping(joints),
+        )
         rows = [_row(rank, hit) for rank, hit in enumerate(hits, 1)]
         print(jsonlib.dumps(rows, indent=1)) if json else _print(rows)
         if sheet:
@@ -108,9 +117,9 @@ def _clip(library: "Library", query: str, asf: Path | None) -> "Clip | StoredCli
 
 
 def _stretch(clip: "Clip | StoredClip", time: Seconds) -> slice:
-    from mocapress.motion.convert import DEFAULT_FPS
+    from mocapress.search.standard import ASSUMED_RATE
 
-    return time.frames(float(clip.frame_time or 1 / DEFAULT_FPS))
+    return time.frames(float(clip.frame_time or 1 / ASSUMED_RATE))
 
 
 def _row(rank: int, hit: "SearchHit") -> dict[str, Any]:

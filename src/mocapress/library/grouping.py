@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.library.clips import StoredClip, by_id
-from mocapress.library.searching import Searchable, entry_at
-from mocapress.search.ranking import alignment
+from mocapress.library.searching import Searchable
 
 if TYPE_CHECKING:
     from mocapress.library.reading import Reading

@@ -1,15 +1,15 @@
 """Rows of a library's index for search by example: a signature and features for each clip."""
 
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from mocapress.errors import UnsupportedError
 from mocapress.library.rows import Connection
 from mocapress.library.schema import SEARCH, version_of
 from mocapress.motion import Clip
-from mocapress.search.body import body_of
 from mocapress.search.index import VERSION, Entry, entry_of
+from mocapress.search.standard import standard_motion
 
 NOTHING = Entry(b"", b"")
 """Of a clip that has no body to be searched; kept, so that nobody tries again."""
@@ -23,10 +23,15 @@ class Kept(NamedTuple):
     """None where there is none, or it is damaged or of another version; empty as ``NOTHING``."""
 
 
-def made_of(clip: Clip) -> Entry:
-    """Index a clip; one without frames or joints of a body gives ``NOTHING``."""
+def made_of(clip: Clip, joints: Mapping[str, str] | None = None) -> Entry:
+    """Index a clip; one without frames or joints of a body gives ``NOTHING``.
+
+    ``joints`` count for skeletons that have all of their names; see ``standard_motion``.
+    """
+    names = clip.skeleton.names if clip.skeleton else ()
+    fitting = joints if joints and {*joints.values()} <= {*names} else None
     try:
-        return entry_of(body_of(clip))
+        return entry_of(standard_motion(clip, fitting))
     except UnsupportedError:
         return NOTHING
 

@@ -263,8 +263,13 @@ class Library(Reading):
         with self.db.reading() as connection:
             return {by_id(self, connection, clip).name: sizes for clip, sizes in done.items()}
 
-    def reindex(self) -> Reindexed:
+    def reindex(self, joints: Mapping[str, str] | None = None) -> Reindexed:
         """Make anew what ``search`` compares, of all clips; each is written when it is made.
+
+        Parameters
+        ----------
+        joints
+            As in ``search``, for the clips whose skeletons have all of these names.
 
         Returns
         -------
@@ -272,7 +277,7 @@ class Library(Reading):
             How many clips can be searched, how many have no body, and what failed.
 
         """
-        return reindex(self)
+        return reindex(self, joints)
 
     def label(self, clip: Which, *labels: str, remove: Sequence[str] = ()) -> None:
         """Give a clip labels, and take others away."""

@@ -1,6 +1,6 @@
 """A library, open: finding clips in it, loading and checking them."""
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, overload
@@ -160,6 +160,7 @@ class Reading:
         top: int = 20,
         within: bool = False,
         mirror: bool = False,
+        joints: Mapping[str, str] | None = None,
     ) -> list[SearchHit]:
         """Find the clips whose motion is most like that of another, or the stretches of clips.
 
@@ -181,6 +182,9 @@ class Reading:
             Whether to find stretches as long as the query in longer clips, instead of whole clips.
         mirror
             Whether the mirror image of the query counts as well.
+        joints
+            Names of the query's joints by those of the standard joints, such as ``left_knee``,
+            where they are not found by their names or by how the body branches.
 
         Returns
         -------
@@ -198,7 +202,9 @@ class Reading:
         if not isinstance(query, Clip):
             with self.db.reading() as connection:
                 query = by_id(self, connection, self._id(query))
-        return search(self, query, frames=frames, top=top, within=within, mirror=mirror)
+        return search(
+            self, query, frames=frames, top=top, within=within, mirror=mirror, joints=joints
+        )
 
     def clips(
         self,

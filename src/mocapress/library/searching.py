@@ -1,7 +1,7 @@
 """Search by example in a library: its index, read or made, and what is found by it."""
 
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,10 +15,9 @@ from mocapress.errors import (
 from mocapress.library import index
 from mocapress.library.clips import StoredClip, by_id
 from mocapress.motion import Clip
-from mocapress.motion.convert import DEFAULT_FPS
-from mocapress.search.body import body_of
 from mocapress.search.index import Entry, entry_of
 from mocapress.search.ranking import Hit, find, rank
+from mocapress.search.standard import ASSUMED_RATE, standard_motion
 
 if TYPE_CHECKING:
     from mocapress.library.library import Library
@@ -92,14 +91,14 @@ def completed(library: "Reading") -> Searchable:
     return Searchable([*there], [*there.values()], made)
 
 
-def reindex(library: "Library") -> Reindexed:
+def reindex(library: "Library", joints: Mapping[str, str] | None = None) -> Reindexed:
     """Make the index of all clips anew."""
     with library.db.reading() as connection:
         clips = [clip for clip, _ in index.signatures(connection)]
     counts, failed = {True: 0, False: 0}, list[MocapressError]()
     for clip in clips:
         try:
-            entry = _made(library, clip)
+            entry = _made(library, clip, joints)
         except MocapressError as error:
             failed.append(error)
             continue
@@ -117,6 +116,7 @@ def search(
     top: int = 20,
     within: bool = False,
     mirror: bool = False,
+    joints: Mapping[str, str] | None = None,
 ) -> list[SearchHit]:
     """Search a library; see ``Library.search``."""
     if top < 1:
@@ -128,10 +128,10 @@ def search(
     def features(place: int) -> bytes:
         return _entry(library, searchable, place).features
 
-    if own >= 0 and not mirror:
+    if own >= 0 and not mirror and not joints:
         queries = [_entry(library, searchable, own)]
     else:
-        queries = _queries(library, query, frames, mirror=mirror)
+        queries = _queries(library, query, frames, joints, mirror=mirror)
     found: list[Hit] = []
     for entry in queries:
         if within:
@@ -148,7 +148,12 @@ def search(
 
 
 def _queries(
-    library: "Reading", query: StoredClip | Clip, frames: slice | None, *, mirror: bool
+    library: "Reading",
+    query: StoredClip | Clip,
+    frames: slice | None,
+    joints: Mapping[str, str] | None,
+    *,
+    mirror: bool,
 ) -> list[Entry]:
     """Give what a query is compared by: itself, and its mirror image if that is wanted."""
     if isinstance(query, StoredClip):
@@ -158,11 +163,11 @@ def _queries(
     if frames is not None and not clip.frames:
         raise ParameterError("no frames are left of the query", file=query.name or None)
     try:
-        body = body_of(clip)
+        motion = standard_motion(clip, joints)
     except UnsupportedError as error:
         error.file = error.file or query.name or None
         raise
-    return [entry_of(body), *([entry_of(body.mirrored())] if mirror else [])]
+    return [entry_of(motion), *([entry_of(motion.mirrored())] if mirror else [])]
 
 
 def _entry(library: "Reading", searchable: Searchable, place: int) -> Entry:
@@ -177,12 +182,12 @@ def _entry(library: "Reading", searchable: Searchable, place: int) -> Entry:
     return searchable.made[clip]
 
 
-def _made(library: "Reading", clip: int) -> Entry:
+def _made(library: "Reading", clip: int, joints: Mapping[str, str] | None = None) -> Entry:
     """Index a clip of a library."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MotionWarning)
         try:
-            return index.made_of(library.load(clip, strict=False))
+            return index.made_of(library.load(clip, strict=False), joints)
         except (FormatError, UnsupportedError):  # no motion, as far as can be read
             return index.NOTHING
 
@@ -206,7 +211,7 @@ def _share(one: Hit, other: Hit) -> float:
 
 
 def _told(clip: StoredClip, hit: Hit, *, within: bool) -> SearchHit:
-    time = clip.frame_time or 1 / DEFAULT_FPS
+    time = clip.frame_time or 1 / ASSUMED_RATE
     start, end = 0, clip.frames
     if within:
         start = min(round(hit.start / time), clip.frames - 1)

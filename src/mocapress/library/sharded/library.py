@@ -240,7 +240,7 @@ class ShardedLibrary(ShardedReading):
         """Refuse: clips are predicted from those of their shard only; see ``remaking``."""
         raise UnsupportedError("coding clips of several shards together", file=self.url)
 
-    def reindex(self) -> Reindexed:
+    def reindex(self, joints: Mapping[str, str] | None = None) -> Reindexed:  # noqa: ARG002
         """Refuse: a shard is made with its index; what it lacks is made when it is searched."""
         raise UnsupportedError("making the index of a sharded library anew", file=self.url)
 
