@@ -42,7 +42,7 @@ def raw(tmp_path: Path, samples: Path, take: Take) -> Path:
 def lib(tmp_path: Path, raw: Path) -> str:
     """Give a library of these files in two shards."""
     url = f"{tmp_path / 'lib'}/"
-    assert mocapress("library", "create", url, "--shard-size", 69000).exit_code == 0
+    assert mocapress("library", "create", url, "--shard-size", 75000).exit_code == 0
     done = mocapress("library", "add", url, raw)
     assert done.exit_code == 0, done.output
     return url
@@ -130,7 +130,7 @@ def test_only_what_is_new_is_added(lib: str, raw: Path, take: Take) -> None:
 
 def test_equal_files_make_equal_shards(lib: str, raw: Path, tmp_path: Path) -> None:
     url = f"{tmp_path / 'again'}/"
-    mocapress("library", "create", url, "--shard-size", 69000)
+    mocapress("library", "create", url, "--shard-size", 75000)
     assert mocapress("library", "add", url, raw, "-j", 2).exit_code == 0
     assert shards_of(url) == shards_of(lib)
 
@@ -287,3 +287,28 @@ def test_a_fork_reads_on_its_own(lib: str, raw: Path) -> None:
         wanted = [(raw / f"walks/0{n}.amc").read_bytes() for n in (1, 2, 1)]
         assert found == wanted
         assert library.read_bytes("walks/01.amc") == wanted[0]
+
+
+def test_a_search_reads_no_motion(tmp_path: Path, samples: Path) -> None:
+    pytest.importorskip("pyarrow")
+    url = f"{tmp_path / 'lib'}/"
+    with mp.open_library(url, "a") as library:
+        for name in ("mocapbank.bvh", "freebvh.bvh"):
+            library.add(samples / name, codec="exact:level=1")
+        library.add(mp.read(samples / "mocapbank.bvh")[200:], "later", index=False)
+        with pytest.raises(mp.UnsupportedError, match="index of a sharded library"):
+            library.reindex()
+    one = tmp_path / "one.mocapdb"
+    with mp.open_library(one, "a") as library:
+        for name in ("mocapbank.bvh", "freebvh.bvh"):
+            library.add(samples / name, codec="exact:level=1")
+    query = mp.read(samples / "mocapbank.bvh")[100:200]
+    with mp.open_library(url, "a") as library, mp.open_library(one) as expected:
+        assert library.lacking() == 1
+        assert library.search(query, within=True)[0].name == "mocapbank.bvh"  # "later" is read
+        library.remove("later")
+        assert library.lacking() == 0
+        for options in ({"within": True}, {}, {"mirror": True}):
+            assert library.search(query, **options) == expected.search(query, **options)
+        count = library.db.connection.execute("SELECT count(*) FROM chunks").fetchone()[0]
+        assert count == 0

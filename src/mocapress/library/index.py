@@ -49,7 +49,7 @@ def write(connection: Connection, clip: int, entry: Entry) -> None:
         return
     connection.execute(
         "INSERT INTO features VALUES(?, ?, ?)",
-        (clip, entry.features, checksum(VERSION, entry.features)),
+        (clip, checksum(VERSION, entry.features), entry.features),
     )
 
 

@@ -58,6 +58,9 @@ class Reading:
     def fetch(self, clips: Iterable[int], companions: Collection[int] = ()) -> None:
         """See that what these need is here; of a library that is one file everything is."""
 
+    def fetch_features(self, clips: Iterable[int]) -> None:
+        """See that what search compares of these is here; see ``fetch``."""
+
     def __enter__(self) -> Self:
         return self
 

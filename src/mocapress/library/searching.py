@@ -174,6 +174,7 @@ def _entry(library: "Reading", searchable: Searchable, place: int) -> Entry:
     """Give what the index has of a clip, which is made anew where it is damaged."""
     clip = searchable.clips[place]
     if clip not in searchable.made:
+        library.fetch_features([clip])
         with library.db.reading() as connection:
             found = index.features(connection, clip)
         if found is not None:

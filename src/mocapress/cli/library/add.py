@@ -70,6 +70,7 @@ def add(
                 codec=made,
                 model=learned,
                 labels=label or [],
+                index=index,
                 cluster=cluster,
                 jobs=jobs,
                 json=json,

@@ -126,6 +126,7 @@ class ShardedLibrary(ShardedReading):
         codec: str | Codec = DEFAULT_CODEC,
         model: Model | None = None,
         labels: Sequence[str] = (),
+        index: bool = True,
     ) -> "Plan":
         """Say what adding the motion files below a folder, or one file, takes.
 
@@ -148,7 +149,7 @@ class ShardedLibrary(ShardedReading):
             near = [file for file in skeletons if PurePosixPath(file.name).parent in folders]
             own = self.store, store, left, near, into, checked, model, tuple(labels)
             if left:
-                tasks.append(Adding(*own, self.manifest.shard_bytes))
+                tasks.append(Adding(*own, self.manifest.shard_bytes, index))
         return Plan(tasks, there)
 
     def publish(self, made: Made) -> None:
