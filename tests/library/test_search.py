@@ -341,16 +341,37 @@ def test_the_command(file: Path, samples: Path, tmp_path: Path) -> None:
         assert text in done.output
 
 
+def test_published_signatures(file: Path, bank: mp.Clip) -> None:
+    with mp.open_library(file) as library:
+        hits = library.search(bank, by="qssd")
+        assert hits[0].name == BANK
+        assert hits[0].score == pytest.approx(0, abs=1e-6)
+        assert {hit.name for hit in hits} == {BANK, FREE, "part", "cmu/climb"}
+        assert [hit.name for hit in library.search(BANK, by="ksvd", top=1)] != [BANK]
+        turned = library.search(mp.mirror(bank), by="qssd", mirror=True)
+        assert turned[0].name == BANK
+        for options in ({"by": "nothing"}, {"by": "qssd", "within": True}):
+            with pytest.raises(mp.ParameterError):
+                library.search(bank, **options)  # type: ignore[arg-type]
+    done = mocapress("search", file, BANK, "--by", "qssd", "--json")
+    assert [row["clip"] for row in json.loads(done.stdout)].count(BANK) == 0
+
+
+def figures_on(picture: Path) -> int:
+    """Count the clips on a sheet."""
+    with Image.open(picture) as opened:
+        pixels = np.asarray(opened).astype(int)
+    inked = pixels[..., 2] - pixels[..., 0] > 40
+    height, width = inked.shape
+    places = [(top, left) for top in range(0, height - 150, 192) for left in range(0, width, 496)]
+    return sum(inked[top : top + 150, left : left + 496].sum() > 200 for top, left in places)
+
+
 def test_a_picture_of_hits(file: Path, tmp_path: Path) -> None:
     picture = tmp_path / "hits.png"
     words = "search", file, BANK, "--frames", "100:190", "--within", "--top", 3
     assert mocapress(*words, "--sheet", picture).exit_code == 0
-    pixels = np.asarray(Image.open(picture)).astype(int)
-    inked = pixels[..., 2] - pixels[..., 0] > 40
-    places = ((0, 0), (0, 496), (0, 992), (192, 0))  # the query and three hits
-    for top, left in places:
-        assert inked[top : top + 150, left : left + 496].sum() > 200
-    assert inked[192:, 520:].sum() == 0
+    assert figures_on(picture) == 4  # the query and three hits
     before = picture.read_bytes()
     assert mocapress(*words, "--sheet", picture).exit_code == 1  # it is there
     assert picture.read_bytes() == before
@@ -372,3 +393,55 @@ def test_query_and_hits_are_played(file: Path, monkeypatch: pytest.MonkeyPatch) 
     clips = json.loads(content)["clips"]
     assert [clip["name"].split(": ")[0] for clip in clips] == ["query", "1", "2"]
     assert clips[0]["name"] == f"query: {BANK}"
+
+
+def test_clusters_and_their_sheets(
+    bank: mp.Clip, climb: mp.Clip, samples: Path, tmp_path: Path
+) -> None:
+    path = tmp_path / "lib.mocapdb"
+    with mp.open_library(path, "a") as library:
+        for number in range(3):
+            library.add(bank[60 + number : 240 + number], f"bank{number}", codec="exact:level=1")
+            library.add(climb[number * 5 :], f"climb{number}", codec="exact:level=1")
+        library.add(samples / "markers.trc")
+        groups = library.clusters()
+        assert sorted(sorted(clip.name for clip in group.clips) for group in groups) == [
+            ["bank0", "bank1", "bank2"],
+            ["climb0", "climb1", "climb2"],
+        ]
+        assert len(library.clusters(4)) == 4
+        (whole,) = library.clusters(1)
+        assert len(whole.clips) == 6
+        with pytest.raises(mp.ParameterError, match="clusters"):
+            library.clusters(0)
+    sheets = tmp_path / "sheets"
+    done = mocapress("library", "cluster", path, "--sheets", sheets)
+    assert done.exit_code == 0, done.output
+    assert done.stdout.count("cluster ") == 2
+    assert done.stdout.count("\n  ") == 6
+    assert [figures_on(sheet) for sheet in sorted(sheets.iterdir())] == [3, 3]
+    assert mocapress("library", "cluster", path, "--sheets", sheets).exit_code == 1  # are there
+    names = json.loads(mocapress("library", "cluster", path, "--json", "--count", 1).stdout)
+    assert len(names) == 1
+    with mp.open_library(tmp_path / "empty.mocapdb", "a") as library:
+        assert library.clusters() == []
+        assert library.duplicates() == []
+        library.add(bank, "one")
+        assert [[clip.name for clip in group.clips] for group in library.clusters()] == [["one"]]
+        assert library.duplicates() == []
+
+
+def test_duplicates_are_found_at_other_rates_and_in_other_formats(
+    file: Path, bank: mp.Clip, climb: mp.Clip
+) -> None:
+    rate = mp.retime(climb, 120)
+    with mp.open_library(file, "a") as library:
+        library.add(mp.resample(bank, 60), "bank at 60", codec="exact:level=1")
+        library.add(mp.to_bvh_clip(rate), "climb as bvh", codec="exact:level=1")
+    done = mocapress("library", "duplicates", file, "--json")
+    groups = [sorted(group) for group in json.loads(done.stdout)]
+    assert sorted(groups) == [["bank at 60", BANK], ["climb as bvh", "cmu/climb"]]
+    shown = mocapress("library", "duplicates", file).stdout
+    assert shown.count(": 2 takes\n") == 2
+    far = json.loads(mocapress("library", "duplicates", file, "--alike", 1e9, "--json").stdout)
+    assert sum(map(len, far)) >= sum(map(len, groups))

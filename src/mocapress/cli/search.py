@@ -40,6 +40,15 @@ def search(
     mirror: Annotated[
         bool, typer.Option("--mirror", help="Also find the mirror image of the query.")
     ] = False,
+    by: Annotated[
+        str | None,
+        typer.Option(
+            "--by",
+            metavar="NAME",
+            help="Compare whole clips by a published signature instead, which reads all motion: "
+            "qssd, qssd-dots or ksvd.",
+        ),
+    ] = None,
     sheet: Annotated[
         Path | None,
         typer.Option("--sheet", help="Draw query and hits. Needs Pillow.", metavar="HITS.png"),
@@ -90,6 +99,7 @@ def search(
             within=within,
             mirror=mirror,
             joints=None if joints is None else read_mapping(joints),
+            by=by,
         )
         rows = [_row(rank, hit) for rank, hit in enumerate(hits, 1)]
         print(jsonlib.dumps(rows, indent=1)) if json else _print(rows)

@@ -7,10 +7,12 @@ from numpy.typing import NDArray
 
 from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.library.clips import StoredClip, by_id
-from mocapress.library.searching import Searchable
+from mocapress.library.searching import Searchable, entry_of_place
+from mocapress.search.ranking import find
+from mocapress.search.standard import ASSUMED_RATE
 
 if TYPE_CHECKING:
-    from mocapress.library.reading import Reading
+    from mocapress.library.finding import Finding
 
 Array = NDArray[np.float64]
 
@@ -20,6 +22,14 @@ _MOST_CLUSTERS = 40
 """That are tried where nobody says how many there are to be."""
 
 
+_NEAREST = 10
+"""Clips of the nearest signatures, which are compared in time to see whether they are the same."""
+_COVERED = 0.8
+"""Part of the longer of two takes that the shorter has to be like."""
+ALIKE = 0.2
+"""Mean distance of frames up to which two takes are nearly the same, unless another is given."""
+
+
 class Group(NamedTuple):
     """Clips that move alike."""
 
@@ -27,7 +37,7 @@ class Group(NamedTuple):
     """The one in the middle first, then by their distance from it."""
 
 
-def clusters(library: "Reading", count: int | None = None) -> list[Group]:
+def clusters(library: "Finding", count: int | None = None) -> list[Group]:
     """Group all clips; see ``Library.clusters``."""
     from scipy.cluster.hierarchy import fcluster, linkage
     from scipy.spatial.distance import squareform
@@ -76,7 +86,7 @@ def _silhouette(apart: Array, cut: NDArray[np.intp]) -> float:
 
 
 def _groups(
-    library: "Reading", searchable: Searchable, apart: Array, cut: NDArray[np.intp]
+    library: "Finding", searchable: Searchable, apart: Array, cut: NDArray[np.intp]
 ) -> list[Group]:
     """Give the clips of each cluster, the largest cluster first."""
     found = []
@@ -89,3 +99,42 @@ def _groups(
                 Group([by_id(library, connection, searchable.clips[at]) for at in order.tolist()])
             )
     return sorted(found, key=lambda group: -len(group.clips))
+
+
+def duplicates(library: "Finding", alike: float = ALIKE) -> list[Group]:
+    """Group takes that are nearly the same; see ``Library.duplicates``."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    searchable = library.searchable()
+    apart = _distances(searchable)
+    count = len(apart)
+    if not count:
+        return []
+    order = np.argsort(apart, axis=1, kind="stable")[:, : _NEAREST + 1]
+    pairs = {(min(i, j), max(i, j)) for i in range(count) for j in order[i].tolist() if i != j}
+    with library.db.reading() as connection:
+        clips = [by_id(library, connection, clip) for clip in searchable.clips]
+    seconds = [clip.frames * (clip.frame_time or 1 / ASSUMED_RATE) for clip in clips]
+    same = [pair for pair in sorted(pairs) if _same(library, searchable, pair, seconds, alike)]
+    rows, columns = (np.array([pair[end] for pair in same], np.intp) for end in (0, 1))
+    links = coo_array((np.ones(len(same)), (rows, columns)), (count, count))
+    _, of = connected_components(links, directed=False)
+    groups = _groups(library, searchable, apart, of)
+    return [group for group in groups if len(group.clips) > 1]
+
+
+def _same(
+    library: "Finding",
+    searchable: Searchable,
+    pair: tuple[int, int],
+    seconds: list[float],
+    alike: float,
+) -> bool:
+    """Say whether the shorter of two clips is nearly all of the longer one."""
+    short, long = sorted(pair, key=lambda place: seconds[place])
+    if seconds[short] < _COVERED * seconds[long]:
+        return False
+    wanted, other = (entry_of_place(library, searchable, place) for place in (short, long))
+    hits = find(wanted, [(long, other.features)], 1)
+    return bool(hits) and hits[0].score <= alike

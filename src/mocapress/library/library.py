@@ -21,7 +21,8 @@ from mocapress.library.adding import (
 from mocapress.library.clips import StoredClip, by_id
 from mocapress.library.coding import Coder
 from mocapress.library.database import WAIT, Database
-from mocapress.library.reading import APPEND, READ, Reading, Which
+from mocapress.library.finding import Finding
+from mocapress.library.reading import APPEND, READ, Which
 from mocapress.library.removing import recompress, remove_clips
 from mocapress.library.searching import Reindexed, reindex
 from mocapress.models import Place, load_model
@@ -79,7 +80,7 @@ def is_sharded(path: str | Path) -> bool:
     return "://" in text or text.endswith("/") or Path(text).is_dir()
 
 
-class Library(Reading):
+class Library(Finding):
     """A library, open; see ``open_library``. Threads may share it, and so may forked processes.
 
     Its clips are in the order of their names: ``len(lib)``, ``lib[0]``, ``lib[10:20]``, and a loop

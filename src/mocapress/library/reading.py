@@ -1,6 +1,6 @@
 """A library, open: finding clips in it, loading and checking them."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, overload
@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any, Self, overload
 from mocapress.api.loading import load_opened
 from mocapress.api.restoring import Restored, restore_opened
 from mocapress.errors import ParameterError
-from mocapress.library import index, names
+from mocapress.library import names
 from mocapress.library.checking import Fault, check, verify_clip
 from mocapress.library.clips import StoredClip, by_id, select
 from mocapress.library.columns import with_columns
 from mocapress.library.database import Database
 from mocapress.library.exporting import export
 from mocapress.library.opened import OpenedClip
-from mocapress.library.searching import Searchable, SearchHit, completed, search
 from mocapress.library.sharing import Known
 from mocapress.library.windows import VALUES, Windows
 from mocapress.models import Place
@@ -38,7 +37,6 @@ class Reading:
         self.models = models
         self._known = Known()
         self._ids: tuple[tuple[int, int], list[int]] | None = None
-        self._searched: tuple[tuple[int, int], Searchable] | None = None
 
     @property
     def path(self) -> Path:
@@ -131,83 +129,17 @@ class Reading:
 
     def _in_order(self) -> list[int]:
         """Give all ids in the order of names, kept until the library changes."""
-        connection, state = self.db.connection, self._state()
+        connection, state = self.db.connection, self.state()
         if self._ids is None or self._ids[0] != state:
             rows = connection.execute("SELECT id FROM clips ORDER BY name").fetchall()
             self._ids = state, [clip for (clip,) in rows]
         return self._ids[1]
 
-    def _state(self) -> tuple[int, int]:
+    def state(self) -> tuple[int, int]:
         """Give what is another when the library has changed."""
         connection = self.db.connection
         version: int = connection.execute("PRAGMA data_version").fetchone()[0]
         return version, connection.total_changes
-
-    def searchable(self) -> Searchable:
-        """Give the index for search, kept until the library changes; what is missing is made."""
-        if self._searched is None or self._searched[0] != self._state():
-            made = completed(self)
-            self._searched = self._state(), made
-        return self._searched[1]
-
-    def lacking(self) -> int:
-        """Say how many clips have no index for search yet, or a damaged one."""
-        with self.db.reading() as connection:
-            return sum(signature is None for _, signature in index.signatures(connection))
-
-    def search(
-        self,
-        query: Which | Clip,
-        *,
-        frames: slice | None = None,
-        top: int = 20,
-        within: bool = False,
-        mirror: bool = False,
-        joints: Mapping[str, str] | None = None,
-    ) -> list[SearchHit]:
-        """Find the clips whose motion is most like that of another, or the stretches of clips.
-
-        Clips are compared as bodies of sixteen joints, without size, place and heading, so those of
-        different skeletons and formats find each other. A clip that has no such body is not found.
-
-        What is compared was made when the clips were added. Where it is missing, it is made now,
-        and kept if the library is open for writing.
-
-        Parameters
-        ----------
-        query
-            A clip of any kind, or one of the library, which does not find itself then.
-        frames
-            Only these frames of the query, e.g. ``slice(100, 200)``.
-        top
-            How many hits there are at most.
-        within
-            Whether to find stretches as long as the query in longer clips, instead of whole clips.
-        mirror
-            Whether the mirror image of the query counts as well.
-        joints
-            Names of the query's joints by those of the standard joints, such as ``left_knee``,
-            where they are not found by their names or by how the body branches.
-
-        Returns
-        -------
-        list of SearchHit
-            The best first.
-
-        Raises
-        ------
-        UnsupportedError
-            When the query lacks a skeleton, or joints of a body, which are named.
-        ParameterError
-            When there is no such clip, or no frames of it are asked for.
-
-        """
-        if not isinstance(query, Clip):
-            with self.db.reading() as connection:
-                query = by_id(self, connection, self._id(query))
-        return search(
-            self, query, frames=frames, top=top, within=within, mirror=mirror, joints=joints
-        )
 
     def clips(
         self,

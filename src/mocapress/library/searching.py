@@ -17,11 +17,11 @@ from mocapress.library.clips import StoredClip, by_id
 from mocapress.motion import Clip
 from mocapress.search.index import Entry, entry_of
 from mocapress.search.ranking import Hit, find, rank
-from mocapress.search.standard import ASSUMED_RATE, standard_motion
+from mocapress.search.standard import ASSUMED_RATE, StandardMotion, standard_motion
 
 if TYPE_CHECKING:
+    from mocapress.library.finding import Finding
     from mocapress.library.library import Library
-    from mocapress.library.reading import Reading
 
 _SHARED = 0.5
 """Part of the shorter of two stretches of a clip that both may have."""
@@ -69,7 +69,7 @@ class Reindexed(NamedTuple):
     """Why clips could not be read."""
 
 
-def completed(library: "Reading") -> Searchable:
+def completed(library: "Finding") -> Searchable:
     """Read the index of a library; what is missing is made, and kept where that is possible."""
     with library.db.reading() as connection:
         kept = index.signatures(connection)
@@ -109,7 +109,7 @@ def reindex(library: "Library", joints: Mapping[str, str] | None = None) -> Rein
 
 
 def search(
-    library: "Reading",
+    library: "Finding",
     query: StoredClip | Clip,
     *,
     frames: slice | None = None,
@@ -117,6 +117,7 @@ def search(
     within: bool = False,
     mirror: bool = False,
     joints: Mapping[str, str] | None = None,
+    by: str | None = None,
 ) -> list[SearchHit]:
     """Search a library; see ``Library.search``."""
     if top < 1:
@@ -126,19 +127,26 @@ def search(
     own = searchable.clips.index(query.id) if isinstance(query, StoredClip) and whole else -1
 
     def features(place: int) -> bytes:
-        return _entry(library, searchable, place).features
+        return entry_of_place(library, searchable, place).features
 
-    if own >= 0 and not mirror and not joints:
-        queries = [_entry(library, searchable, own)]
-    else:
-        queries = _queries(library, query, frames, joints, mirror=mirror)
     found: list[Hit] = []
-    for entry in queries:
+    if by is not None:
         if within:
-            everything = ((place, features(place)) for place in range(len(searchable.clips)))
-            found += find(entry, everything, top)
+            raise ParameterError("published signatures are of whole clips", found="within")
+        motion = _motion(library, query, frames, joints)
+        found = _published(library, searchable, motion, by, mirror=mirror)
+    else:
+        if own >= 0 and not mirror and not joints:
+            queries = [entry_of_place(library, searchable, own)]
         else:
-            found += rank(entry, searchable.signatures, features, top + (own >= 0))
+            motion = _motion(library, query, frames, joints)
+            queries = [entry_of(motion), *([entry_of(motion.mirrored())] if mirror else [])]
+        for entry in queries:
+            if within:
+                everything = ((place, features(place)) for place in range(len(searchable.clips)))
+                found += find(entry, everything, top)
+            else:
+                found += rank(entry, searchable.signatures, features, top + (own >= 0))
     best = _best(hit for hit in found if within or hit.place != own)
     with library.db.reading() as connection:
         return [
@@ -147,15 +155,12 @@ def search(
         ]
 
 
-def _queries(
-    library: "Reading",
+def _motion(
+    library: "Finding",
     query: StoredClip | Clip,
     frames: slice | None,
     joints: Mapping[str, str] | None,
-    *,
-    mirror: bool,
-) -> list[Entry]:
-    """Give what a query is compared by: itself, and its mirror image if that is wanted."""
+) -> StandardMotion:
     if isinstance(query, StoredClip):
         clip = library.load(query, frames, strict=False)
     else:
@@ -163,14 +168,24 @@ def _queries(
     if frames is not None and not clip.frames:
         raise ParameterError("no frames are left of the query", file=query.name or None)
     try:
-        motion = standard_motion(clip, joints)
+        return standard_motion(clip, joints)
     except UnsupportedError as error:
         error.file = error.file or query.name or None
         raise
-    return [entry_of(motion), *([entry_of(motion.mirrored())] if mirror else [])]
 
 
-def _entry(library: "Reading", searchable: Searchable, place: int) -> Entry:
+def _published(
+    library: "Finding", searchable: Searchable, motion: StandardMotion, by: str, *, mirror: bool
+) -> list[Hit]:
+    """Compare whole clips by a published signature, which no library keeps."""
+    from mocapress.search.published import distances_by
+
+    others = (standard_motion(library.load(clip, strict=False)) for clip in searchable.clips)
+    distances = distances_by(by, motion, others, mirror=mirror)
+    return [Hit(place, float(distance), 0.0, 0.0) for place, distance in enumerate(distances)]
+
+
+def entry_of_place(library: "Finding", searchable: Searchable, place: int) -> Entry:
     """Give what the index has of a clip, which is made anew where it is damaged."""
     clip = searchable.clips[place]
     if clip not in searchable.made:
@@ -183,7 +198,7 @@ def _entry(library: "Reading", searchable: Searchable, place: int) -> Entry:
     return searchable.made[clip]
 
 
-def _made(library: "Reading", clip: int, joints: Mapping[str, str] | None = None) -> Entry:
+def _made(library: "Finding", clip: int, joints: Mapping[str, str] | None = None) -> Entry:
     """Index a clip of a library."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MotionWarning)

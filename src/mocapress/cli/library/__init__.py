@@ -5,7 +5,9 @@ import typer
 from mocapress.cli.library.add import add
 from mocapress.cli.library.cat import cat
 from mocapress.cli.library.check import check
+from mocapress.cli.library.cluster import cluster
 from mocapress.cli.library.create import create
+from mocapress.cli.library.duplicates import duplicates
 from mocapress.cli.library.export import export
 from mocapress.cli.library.extract import extract
 from mocapress.cli.library.import_mcz import import_mcz
@@ -32,3 +34,5 @@ for _command in (info, extract, cat, remove, label, verify, recompress, reindex,
 app.command("import")(import_mcz)
 app.command()(check)
 app.command()(sheet)
+app.command()(cluster)
+app.command()(duplicates)
