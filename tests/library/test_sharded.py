@@ -308,7 +308,8 @@ def test_a_search_reads_no_motion(tmp_path: Path, samples: Path) -> None:
         assert library.search(query, within=True)[0].name == "mocapbank.bvh"  # "later" is read
         library.remove("later")
         assert library.lacking() == 0
-        for options in ({"within": True}, {}, {"mirror": True}):
-            assert library.search(query, **options) == expected.search(query, **options)
+        for within, mirror in ((True, False), (False, False), (False, True)):
+            found = library.search(query, within=within, mirror=mirror)
+            assert found == expected.search(query, within=within, mirror=mirror)
         count = library.db.connection.execute("SELECT count(*) FROM chunks").fetchone()[0]
         assert count == 0
