@@ -68,5 +68,6 @@ void bind_mrpa(nb::module_& module);
 void bind_near(nb::module_& module);
 void bind_qssd(nb::module_& module);
 void bind_qssd_learning(nb::module_& module);
+void bind_search(nb::module_& module);
 
 }  // namespace mocapress

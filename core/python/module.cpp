@@ -16,4 +16,5 @@ NB_MODULE(_core, module) {
   mocapress::bind_near(module);
   mocapress::bind_qssd(module);
   mocapress::bind_qssd_learning(module);
+  mocapress::bind_search(module);
 }
