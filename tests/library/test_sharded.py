@@ -2,6 +2,7 @@
 
 import json
 import multiprocessing
+import os
 import pickle
 import shutil
 import sqlite3
@@ -16,6 +17,7 @@ from takes import amc_of
 import mocapress as mp
 from mocapress.library import schema
 from mocapress.library.sharded import manifest, open_sharded, publishing
+from mocapress.library.sharded.executor import executor
 from mocapress.library.sharded.manifest import shard_file
 from mocapress.library.sharded.places import joined, last_values
 from mocapress.library.sharded.store import Store
@@ -104,6 +106,8 @@ def test_python_reads_as_of_one_file(lib: str, raw: Path) -> None:
         assert (
             mp.decompress(library.read_mcz("walks/02.amc")) == (raw / "walks/02.amc").read_bytes()
         )
+        with pytest.raises(mp.ParameterError, match="no such clip"):
+            library.load(12345)
         assert library.windows(50, glob="walks")[3].shape == (50, 62)
         again = pickle.loads(pickle.dumps(library))
         assert again.read_bytes("z.bvh") == (raw / "z.bvh").read_bytes()
@@ -287,3 +291,8 @@ def test_a_fork_reads_on_its_own(lib: str, raw: Path) -> None:
         wanted = [(raw / f"walks/0{n}.amc").read_bytes() for n in (1, 2, 1)]
         assert found == wanted
         assert library.read_bytes("walks/01.amc") == wanted[0]
+
+
+def test_a_process_that_dies_is_told(lib: str) -> None:
+    with executor(jobs=2) as where, pytest.raises(OSError, match="died"):
+        where.call(os._exit, 1)

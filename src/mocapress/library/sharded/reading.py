@@ -111,7 +111,7 @@ class ShardedReading(Library):
             wanted = [(CLIP, number) for number in self._with_sources(clips)]
             wanted += [(MODEL, number) for number in self._models_of(wanted)]
             wanted += [(COMPANION, number) for number in companions]
-            missing = [key for key in wanted if key not in self._there]
+            missing = [key for key in wanted if key in self._row and key not in self._there]
             if not missing:
                 return
             rows = self.manifest.rows.take([self._row[key] for key in missing]).to_pylist()
