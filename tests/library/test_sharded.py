@@ -7,7 +7,9 @@ import pickle
 import shutil
 import sqlite3
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -296,3 +298,33 @@ def test_a_fork_reads_on_its_own(lib: str, raw: Path) -> None:
 def test_a_process_that_dies_is_told(lib: str) -> None:
     with executor(jobs=2) as where, pytest.raises(OSError, match="died"):
         where.call(os._exit, 1)
+
+
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [
+        ("size", -1),
+        ("id", 2**63 - 1),
+        ("runs", [[1, 2]]),
+        ("value_size", -1),
+        ("value_places", [2**60, 2**60, 1]),
+        ("value_places", [1]),
+        ("skeleton_record", b"no skeleton"),
+        ("head", b""),
+        ("chunk_list", b"x"),
+    ],
+)
+def test_a_forged_manifest_is_told(tmp_path: Path, samples: Path, column: str, value: Any) -> None:
+    url = f"{tmp_path / 'lib'}/"
+    with mp.open_library(url, "a") as library:
+        library.add(samples / "freebvh.bvh")
+        rows = library.manifest.rows.to_pylist()  # type: ignore[attr-defined]
+        forged = replace(
+            library.manifest,  # type: ignore[attr-defined]
+            rows=manifest.table_of([row | {column: value} for row in rows]),
+        )
+    max(Path(url, "manifest").iterdir()).write_bytes(forged.data)
+    done = mocapress("library", "cat", url, "freebvh.bvh")
+    assert done.exit_code == 1
+    assert len(done.stderr.splitlines()) == 1
+    assert "defect" not in done.stderr
