@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from mocapress.cli.library.opening import File, Patterns, chosen, jobs_of, opened
-from mocapress.cli.options import Debug, Jobs, Json, Models
+from mocapress.cli.options import Debug, Jobs, Json, Limit, Models
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -13,6 +13,7 @@ def verify(
     file: File,
     patterns: Patterns = None,
     models: Models = None,
+    limit: Limit = None,
     jobs: Jobs = 1,
     json: Json = False,
     debug: Debug = False,
@@ -22,7 +23,7 @@ def verify(
     from mocapress.cli.models import open_models
     from mocapress.errors import CorruptError
 
-    with opened(file, debug=debug, models=open_models(models or [])) as library:
+    with opened(file, debug=debug, models=open_models(models or []), limit=limit) as library:
 
         def work(job: "Job") -> dict[str, Any]:
             faults = library.verify([str(job.source)])
