@@ -1,7 +1,7 @@
 """``mocapress bench search``."""
 
 import json as jsonlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from mocapress_bench.search_data import Take
 
 _CUTS = "hdm05"
+_TAKES = "mocap6"
 _TRIALS = "cmu_labels.tsv"
 
 
@@ -24,6 +25,9 @@ def search(
     ] = None,
     only: Annotated[str, typer.Option(help="Methods whose names begin so, by commas.")] = "",
     seeds: Annotated[int, typer.Option(help="Runs of methods that draw.", min=1)] = 5,
+    stretches: Annotated[
+        bool, typer.Option(help="Search in long takes, too: joined cuts, and mocap6/.")
+    ] = True,
     json: Json = None,
     markdown: Markdown = None,
     plots: Annotated[
@@ -58,6 +62,10 @@ def search(
         classes = len({take.label for take in takes})
         results[told] = rows
         parts.append(tables.ranked(f"{told}: {len(takes)} clips, {classes} classes", rows))
+    if stretches:
+        rows = list(_stretches(data, corpus, sets, set(methods), seeds, show))
+        results["stretches"] = rows
+        parts += [tables.stretches(rows)] if rows else []
     parts += [tables.confused(name, *found) for name, found in confused.items()]
     results["confusion"] = {
         name: {"classes": classes, "per cent": matrix.round(2).tolist()}
@@ -91,3 +99,27 @@ def _read(data: Path, corpus: Path | None, show: Callable[[str], None]) -> "dict
     if not sets:
         usage(f"no folder {_CUTS} in {data}")
     return sets
+
+
+def _stretches(
+    data: Path,
+    corpus: Path | None,
+    sets: "dict[str, list[Take]]",
+    names: set[str],
+    seeds: int,
+    show: Callable[[str], None],
+) -> Iterator[dict[str, Any]]:
+    from mocapress_bench.search_stretches import FINDERS, joined, labelled, measure, measure_labels
+
+    named = {name: finder for name, finder in FINDERS.items() if name in names}
+    skeletons = sorted(corpus.rglob("*.asf")) if corpus is not None else []
+    for name, finder in named.items():
+        show(f"stretches: {name}")
+        row: dict[str, Any] = {"method": name}
+        if "HDM05" in sets:
+            takes = sets["HDM05"]
+            row |= measure(finder, takes, [joined(takes, seed) for seed in range(min(seeds, 2))])
+        if (data / _TAKES).is_dir() and skeletons:
+            queries, longs = labelled(data / _TAKES, skeletons[0])
+            row |= measure_labels(finder(longs), queries, longs)
+        yield row

@@ -38,6 +38,22 @@ def ranked(name: str, rows: Sequence[dict[str, Any]]) -> str:
     return markdown(head, lines)
 
 
+def stretches(rows: Sequence[dict[str, Any]]) -> str:
+    """Lay out how well methods find stretches of long takes."""
+    names = {
+        "recall at R": "joined cuts: recall at R, %",
+        "IoU": "mean IoU",
+        "ms a query in takes": "ms a query",
+        "frame AP": "labelled takes: frame AP, %",
+        "first right": "first hit right, %",
+    }
+    lines = [
+        [row["method"], *(f"{row[key]:.3g}" if row.get(key) is not None else "" for key in names)]
+        for row in rows
+    ]
+    return markdown(["stretches", *names.values()], lines)
+
+
 def confused(name: str, classes: list[str], matrix: NDArray[np.float64]) -> str:
     """Lay out a confusion matrix: rows are queries' classes, columns those of what was found."""
     lines = [

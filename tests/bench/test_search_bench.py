@@ -14,6 +14,7 @@ from mocapress_bench.search import METHODS
 from mocapress_bench.search_alignment import Clips, separate, stretches
 from mocapress_bench.search_measures import average_precision, confusion, measures
 from mocapress_bench.search_rivals import between_clouds, euclidean
+from mocapress_bench.search_stretches import Hit, Mark, iou
 
 Array = NDArray[np.float64]
 
@@ -88,6 +89,13 @@ def test_a_stretch_is_found_where_it_lies() -> None:
     assert not np.isfinite(too_fast).any()
 
 
+def test_iou_of_stretches() -> None:
+    mark = Mark(10, 20, "a", 0)
+    assert iou(Hit(0, 0, 10, 20), mark) == 1
+    assert iou(Hit(0, 0, 15, 25), mark) == pytest.approx(1 / 3)
+    assert iou(Hit(0, 0, 30, 40), mark) == 0
+
+
 def test_clouds_are_compared_at_their_best_turn_and_place() -> None:
     random = np.random.default_rng(2)
     cloud = random.normal(size=(1, 9, 3))
@@ -135,6 +143,9 @@ def test_the_command_ranks_by_all_methods(cuts: Path, tmp_path: Path) -> None:
     assert by["match webs (Kovar 2004)"]["true positives"] == 100
     assert by["QSSD"]["true positives"] > 60
     assert by["QSSD"]["bytes"] > 0
+    (stretches,) = found["stretches"]
+    assert stretches["recall at R"] > 90
+    assert stretches["IoU"] > 0.8
     assert np.sum(found["confusion"]["QSSD"]["per cent"], axis=1) == pytest.approx(100, abs=0.1)
 
 

@@ -23,8 +23,8 @@ from mocapress.motion.number_format import NumberFormat
 MOST_TEMPLATES = 64
 _PIECE = 2**16
 """Numbers that are printed together."""
-# Of how many rows the texts are looked at to find formats.
 _MOST_COUNTER = 2**59
+# Of how many rows the texts are looked at to find formats.
 _SAMPLE = 48
 # A template that leaves fewer numbers than one in so many written otherwise is good enough.
 _FEW = 50

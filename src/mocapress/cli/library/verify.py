@@ -2,7 +2,15 @@
 
 from typing import TYPE_CHECKING, Any
 
-from mocapress.cli.library.opening import File, Patterns, chosen, jobs_of, opened
+from mocapress.cli.library.opening import (
+    Cluster,
+    File,
+    Patterns,
+    chosen,
+    jobs_of,
+    opened,
+    sharded,
+)
 from mocapress.cli.options import Debug, Jobs, Json, Limit, Models
 
 if TYPE_CHECKING:
@@ -14,16 +22,26 @@ def verify(
     patterns: Patterns = None,
     models: Models = None,
     limit: Limit = None,
+    cluster: Cluster = None,
     jobs: Jobs = 1,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
     """Decode clips and check all their checksums; exit code 3 if one is damaged."""
-    from mocapress.cli.batch import run
+    from mocapress.cli.batch import run, usage
     from mocapress.cli.models import open_models
     from mocapress.errors import CorruptError
 
     with opened(file, debug=debug, models=open_models(models or []), limit=limit) as library:
+        clips = chosen(library, patterns)
+        shards = sharded(library, cluster)
+        if shards is not None:
+            if limit is not None:
+                usage("--limit is for libraries of one file")
+            from mocapress.cli.library.shards import verify_shards
+
+            verify_shards(shards, clips, cluster=cluster, jobs=jobs, json=json, debug=debug)
+            return
 
         def work(job: "Job") -> dict[str, Any]:
             faults = library.verify([str(job.source)])
@@ -32,7 +50,7 @@ def verify(
             return {"ok": True}
 
         run(
-            jobs_of(chosen(library, patterns)),
+            jobs_of(clips),
             work,
             threads=jobs,
             json=json,
