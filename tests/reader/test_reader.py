@@ -38,6 +38,8 @@ CASES = [
     ("numbers.bvh", "diffma:order=2,chunk=16,window=3"),
     ("couplings.bvh", "near:quality=8,chunk=200"),
     ("numbers.bvh", "near:chunk=16"),
+    ("couplings.bvh", "patterns:chunk=30,max_error=0.5"),
+    ("numbers.bvh", "patterns:chunk=16,mode=published with a model"),
     ("skeleton.amc", "exact:level=1,chunk=13"),
     ("numbers.bvh", "exact:level=1"),
     ("numbers.bvh", "exact:level=2,chunk=16"),
