@@ -8,7 +8,7 @@ from typer.testing import CliRunner, Result
 
 from mocapress.cli.app import app
 
-COMMAND = [sys.executable, "-c", "from mocapress.cli import main; main()"]
+COMMAND = [sys.executable, "-m", "mocapress"]
 
 
 def mocapress(*words: object) -> Result:

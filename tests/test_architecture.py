@@ -20,9 +20,11 @@ ROWS = [
     {"container"},
     {"models"},
     {"api"},
+    {"search"},
     {"library"},
     {"describe", "viewer", "arrays"},
     {"cli"},
+    {"__main__"},
 ]
 HEIGHT = {box: row for row, boxes in enumerate(ROWS) for box in boxes}
 
@@ -75,6 +77,9 @@ def test_importing_mocapress_loads_no_numpy_and_no_extras() -> None:
         "numcodecs",
         "torch",
         "cv2",
+        "pyarrow",
+        "fsspec",
+        "distributed",
     }
     code = f"import sys, mocapress; print(sorted({heavy!r} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -82,7 +87,7 @@ def test_importing_mocapress_loads_no_numpy_and_no_extras() -> None:
 
 
 def test_commands_load_no_extras(tmp_path: Path) -> None:
-    extras = {"matplotlib", "zstandard", "brotli", "pcodec", "fpzip", "zfpy"}
+    extras = {"matplotlib", "zstandard", "brotli", "pcodec", "fpzip", "zfpy", "pyarrow", "fsspec"}
     code = (
         "import sys\nfrom mocapress import api\n"
         f"api.compress(b'1 2 3'); print(sorted({extras!r} & set(sys.modules)))"

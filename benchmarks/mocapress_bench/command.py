@@ -7,6 +7,8 @@ from mocapress_bench.diffma_command import diffma
 from mocapress_bench.lossless_command import lossless
 from mocapress_bench.mrpa_command import mrpa
 from mocapress_bench.qssd_command import qssd
+from mocapress_bench.qssd_model_command import qssd_model
+from mocapress_bench.search_command import search
 
 app = typer.Typer(
     help="Measure codecs on clips.",
@@ -14,5 +16,5 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (lossless, diffma, mrpa, qssd, demo):
+for command in (lossless, diffma, mrpa, qssd, qssd_model, search, demo):
     app.command()(command)

@@ -57,6 +57,8 @@ class Row:
             "distortion": float(np.mean(self.distortion)),
             "degrees": float(np.mean(self.degrees)),
             "bits/joint sample": 8 * counted / self.joint_samples,
+            "clips": len(self.distortion),
+            "text": self.text,
             "payload": self.payload,
             "header": self.header,
             "model": self.model,
@@ -69,11 +71,10 @@ def measure(
     paths: Sequence[Path],
     steps: Sequence[float],
     model: mp.Model | None,
-    *,
-    held_out: bool = False,
+    name: str,
     progress: Callable[[str], None] = lambda _: None,
 ) -> list[dict[str, float | str]]:
-    """Code clips at each step, with and without a model.
+    """Code clips at each step of weights.
 
     Parameters
     ----------
@@ -83,13 +84,12 @@ def measure(
         Of weights.
     model
         A dictionary; None: without one.
-    held_out
-        Whether the model learned from other clips.
+    name
+        What the rows are called besides the step: which clips, which dictionary.
     progress
         Is told each clip.
 
     """
-    name = "without a model" if model is None else "held out" if held_out else "with the model"
     rows = [Row(f"step {step:g}, {name}") for step in steps]
     for path in paths:
         progress(path.name)

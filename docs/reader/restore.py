@@ -16,6 +16,7 @@ import sys
 import zlib
 from pathlib import Path
 
+import arrays
 import c3d
 import table
 from container import Stream, packed, read_file, read_model
@@ -41,9 +42,10 @@ def restored(data: bytes, model: bytes | None = None) -> bytes:
         original = file.layout
     else:
         rows = decoded(file.streams[0], model)
-        if file.format == "c3d":
+        if file.format in ("c3d", "npy", "npz"):
             others = [decoded(stream, None) for stream in file.streams[1:]]
-            original = c3d.Layout(file.layout).printed([rows, *others])
+            layout = (c3d if file.format == "c3d" else arrays).Layout(file.layout)
+            original = layout.printed([rows, *others])
         elif file.format in ("csv", "trc"):
             original = table.Layout(file.layout).printed(rows)
         else:

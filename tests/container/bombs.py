@@ -292,6 +292,33 @@ def of_codec_header(columns: int, frames: int, header: bytes, payload: bytes) ->
     return mcz(named, spec, header, [(frames, payload, 0)], original)
 
 
+@bomb
+def frames_that_are_lost() -> bytes:
+    """A chunk that announces a million frames, and has none."""
+    return of_lost_chunks(2**20)
+
+
+@bomb
+def more_frames_than_the_stream_lost() -> bytes:
+    """The head announces one frame, the chunks a million."""
+    return of_lost_chunks(1)
+
+
+def of_lost_chunks(announced: int) -> bytes:
+    """Give a recording of two chunks, the first of which needs one before it."""
+    parts: list[bytes] = []
+    writer = MczWriter(parts.append)
+    named = numbered_columns(62, ("x",))
+    spec = CodecSpec("exact", {"level": 6, "chunk": 2**20})
+    head = StreamHead("motion", announced, None, named, spec, b"", polynomials(62, []))
+    writer.head(Head((head,)))
+    first = Entry(0, 0, 2**20 - 1, False, False, False, 0, 0)
+    writer.chunk(CodedChunk(first, 0, b"", bytes(2**14)))
+    writer.chunk(CodedChunk(Entry(0, first.last, 1, True, False, False, 0, 0), 0, b"", b""))
+    writer.end()
+    return b"".join(parts)
+
+
 def polynomials(columns: int, couplings: list[tuple[int, ...]]) -> bytes:
     """Give a codec header of predicted columns and polynomial couplings of 6 sources, 3 targets."""
     parts = [record(0), record(1, 0), record(1, 3 * 32), record(1, 0), record(0), record(0)]

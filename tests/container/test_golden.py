@@ -51,7 +51,8 @@ def test_there_is_a_file_of_everything() -> None:
     codecs = {stream.codec.id for one in opened for stream in one.streams}
     assert codecs == set(codec_ids())
     originals = [one.mcz.original for one in opened if one.mcz.original]
-    assert {original.format for original in originals} == {"amc", "bvh", "c3d", "csv", "trc", ""}
+    kinds = {"amc", "bvh", "c3d", "csv", "npy", "npz", "trc", ""}
+    assert {original.format for original in originals} == kinds
     assert any(original.problems for original in originals)
     assert any(one.mcz.notes for one in opened)
     assert any(one.mcz.companions for one in opened)

@@ -75,7 +75,9 @@ def test_broken_tables_are_refused_as_other_files_are() -> None:
     Path("headless.tbl").write_bytes(b"1.25\n")
     with pytest.raises(mp.FormatError, match="expected TABLE and a rate"):
         mp.read("headless.tbl")
-    with pytest.raises(mp.FormatError, match="expected AMC, ASF, BVH, C3D, CSV, TRC or table"):
+    with pytest.raises(
+        mp.FormatError, match="expected AMC, ASF, BVH, C3D, CSV, NPY, NPZ, TRC or table"
+    ):
         mp.read(b"1.25\n")
 
 

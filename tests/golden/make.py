@@ -20,6 +20,7 @@ from mocapress.models import model_bytes
 
 HERE = Path(__file__).parent
 sys.path += [str(HERE), str(HERE.parent / "codecs"), str(HERE.parent / "formats")]
+import array_files  # noqa: E402
 import c3d_files  # noqa: E402
 import clips  # noqa: E402
 import payloads  # noqa: E402
@@ -157,6 +158,8 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_integers.c3d": (c3d_files.whole_numbers(c3d_files.INTEL), "exact:level=2,chunk=60", {}),
     "v1_markers.trc": (table_files.trc(table_files.markers()), "exact:level=1,chunk=60", {}),
     "v1_odd.csv": (table_files.odd_table(), "exact:level=2,chunk=60", {}),
+    "v1_kinds.npz": (array_files.every_kind(), "exact:level=2,chunk=60", {}),
+    "v1_columns.npy": (array_files.by_columns(), "exact:level=3,chunk=60", {}),
     "v1_mips_integers.c3d": (c3d_files.whole_numbers(c3d_files.MIPS), "exact:level=3,chunk=60", {}),
 }
 # NAME.mcz was coded with the model NAME.mcm, which was learned from the file itself.

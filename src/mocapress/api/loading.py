@@ -168,7 +168,7 @@ def _clip(
         values = np.empty((0, len(head.columns)))
         if rows:
             first, last = min(rows[0], rows[-1]), max(rows[0], rows[-1]) + 1
-            values = opened.rows(index, first, last).values[:: rows.step]
+            values = opened.rows(index, first, last).filled()[:: rows.step]
         # Every second frame lasts twice as long.
         time = None if head.frame_time is None else head.frame_time * abs(rows.step)
         streams[head.name] = Stream(values, head.columns, time)

@@ -25,9 +25,15 @@ class Rows:
     """Decoded frames of a stream."""
 
     values: NDArray[np.float64]
-    """(F, C); NaN in rows that are lost."""
+    """(F, C); zeros in rows that are lost, which take no memory as long as nobody writes there."""
     kept: NDArray[np.bool_]
     """(F,) whether a row is what was coded."""
+
+    def filled(self) -> NDArray[np.float64]:
+        """Give all rows, NaN in those that are lost."""
+        if not self.kept.all():
+            self.values[~self.kept] = np.nan
+        return self.values
 
 
 class Opened:
@@ -132,7 +138,7 @@ class Opened:
             begin = first - groups[0][0].first
             rows = self._decode(stream, groups[0], last)[begin:]
             return Rows(rows, np.ones(len(rows), np.bool_))
-        values = np.empty((max(last - first, 0), len(head.columns)))
+        values = np.zeros((max(last - first, 0), len(head.columns)))
         kept = np.zeros(len(values), np.bool_)
         for group in groups:
             try:
@@ -147,7 +153,6 @@ class Opened:
                     raise
                 frames = f"frames {group[0].first} to {group[-1].last - 1}"
                 self.damage.append(Damage(f"{frames} of stream {head.name}", error))
-        values[~kept] = np.nan
         if self.salvage:
             self._name_gaps(stream, first, last)
         return Rows(values, kept)
@@ -161,11 +166,11 @@ class Opened:
         start = max(bisect_right(entries, frame, key=lambda entry: entry.first) - 1, 0)
         while start > 0 and not entries[start].restart:
             start -= 1
-        begin = entries[start].first
+        begin = min(entries[start].first, last)
         most = begin + _RUN // max(columns, 1)
         for entry in entries[start + 1 :]:
             if entry.restart and entry.last > most and entry.first > frame:
-                return begin, entry.first
+                return begin, min(entry.first, last)
         return begin, last
 
     def _name_gaps(self, stream: int, first: int, last: int) -> None:

@@ -171,7 +171,7 @@ def in_order(opened: Opened) -> RowsOf:
                 held[stream] = (0, np.empty((0, 0)))
                 del values
                 begin, end = opened.run_at(stream, first)
-                values = opened.rows(stream, begin, end).values
+                values = opened.rows(stream, begin, end).filled()
                 held[stream] = begin, values
             stop = min(last, begin + len(values))
             parts.append(values[first - begin : stop - begin])

@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from mocapress.cli.cat import cat
 from mocapress.cli.compare import compare
 from mocapress.cli.compress import compress
 from mocapress.cli.convert import convert
@@ -55,7 +56,7 @@ def options(
     _ = version, debug
 
 
-for _command in (compress, decompress, verify, train, info, convert, compare, stats, view):
+for _command in (compress, decompress, verify, train, info, convert, cat, compare, stats, view):
     app.command()(_command)
 app.command("list")(list_files)
 app.command("codecs")(list_codecs)

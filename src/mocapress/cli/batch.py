@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import typer
 
+from mocapress.cli.progress import bar
 from mocapress.cli.report import Report
 from mocapress.cli.warned import collecting, kept
 from mocapress.errors import MotionWarning, ParameterError
@@ -54,8 +55,8 @@ class Job:
     """Whether outputs get the source's modification time; they always get its permissions."""
     stored: bool = False
     """Whether the source is no file but a name in a library."""
-    share: float = 1
-    """How much of all the work it is."""
+    share: float = 0
+    """How much of all the work it is: bytes, where they are known."""
     outputs: dict[Path, Contents] = field(default_factory=dict)
     """What was made and is to be stored, all of it or nothing."""
     modified: int | None = None
@@ -81,11 +82,21 @@ def find(inputs: Sequence[Path], suffixes: tuple[str, ...]) -> list[Job]:
             jobs += [Job(found, path, in_folder=True) for found in _below(path, suffixes)]
         else:
             jobs.append(Job(path, path.parent))
+    for job in jobs:
+        job.share = size_of(job.source)
     if not jobs:
         usage(f"no {' or '.join(suffixes)} files in {', '.join(map(str, inputs))}")
     if len(jobs) > 1 and any(job.source == STREAM for job in jobs):
         usage("stdin cannot be one of many inputs")
     return jobs
+
+
+def size_of(path: Path) -> int:
+    """Give the bytes of a file; 0 for a stream, and for what cannot be looked at and will fail."""
+    try:
+        return path.stat().st_size
+    except (OSError, ValueError):
+        return 0
 
 
 def is_folder(path: str | Path) -> bool:
@@ -183,13 +194,13 @@ def run(
             done.put(job)
 
     number = len(jobs) if isinstance(jobs, Sequence) else None
-    if whole is None:
-        whole = number
+    if whole is None and isinstance(jobs, Sequence):
+        whole = sum(job.share for job in jobs)
     threads = threads or os.cpu_count() or 1
     pool = ThreadPoolExecutor(threads)
     coming, begun, more = iter(jobs), 0, True
     try:
-        with collecting(), _signals(done.put), _bar(whole, number) as advance:
+        with collecting(), _signals(done.put), bar(whole, number) as advance:
             while True:
                 while more and begun - report.count < threads + _AHEAD:
                     job = next(coming, None)
@@ -203,7 +214,7 @@ def run(
                 if isinstance(told, int):
                     _stop(told, number, done, storing, report, close)
                 report.add(told)
-                advance(told.share)
+                advance(str(told.source), told.share)
     finally:
         pool.shutdown(cancel_futures=True)
     report.end(total)
@@ -317,18 +328,3 @@ def _signals(put: Callable[[int], None]) -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-@contextmanager
-def _bar(whole: float | None, jobs: int | None) -> Iterator[Callable[[float], None]]:
-    """Show progress on a terminal, unless it is there that the results appear."""
-    if jobs == 1 or not sys.stderr.isatty() or sys.stdout.isatty():
-        yield lambda _: None
-        return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, redirect_stdout=False) as bar:
-        task = bar.add_task("", total=whole)
-        yield lambda share: bar.advance(task, share)

@@ -17,6 +17,7 @@ from mocapress.cli.options import (
     Models,
     Output,
 )
+from mocapress.cli.selecting import Every, Frames, Resample, Retime, Selection, Time
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -36,9 +37,14 @@ def convert(
     asf: Asf = None,
     models: Models = None,
     limit: Limit = None,
+    frames: Frames = None,
+    time: Time = None,
+    every: Every = None,
+    resample: Resample = None,
+    retime: Retime = None,
     fps: Annotated[
         float | None,
-        typer.Option("--fps", help="Frames per second, instead of what the file states.", min=1e-3),
+        typer.Option("--fps", help="Frames per second of files that do not state them.", min=1e-3),
     ] = None,
     lenient: Lenient = False,
     jobs: Jobs = 1,
@@ -56,6 +62,7 @@ def convert(
     from mocapress.motion.convert import with_rate
     from mocapress.storage import is_stream
 
+    wanted = Selection(frames, time, every, resample, retime, fps)
     made = _format(to, output)
     refuse_other_kinds(output, made.suffixes, known_endings())
     given = open_models(models or [])
@@ -83,7 +90,7 @@ def convert(
         source = job.opened(limit)
         places = places_for(job, given)
         clip = api.read_source(source, asf, models=places, strict=not lenient)
-        clip = with_rate(clip, fps, needed=made.timed)
+        clip = with_rate(wanted.of(clip), needed=made.timed)
         job.outputs |= api.printed(clip, made, job.target)
         if job.target == STREAM or is_stream(job.target):  # which has nothing beside it
             job.outputs = {job.target: job.outputs[job.target]}

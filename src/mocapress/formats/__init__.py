@@ -30,7 +30,7 @@ __all__ = [
 
 GROUP = "mocapress.formats"
 # Modules whose ``FORMAT`` is asked in this order; an ASF can look like an AMC, too.
-_OWN = ("c3d", "bvh", "asf", "amc", "trc", "tables", "npz", "parquet")
+_OWN = ("c3d", "npy", "npz", "bvh", "asf", "amc", "trc", "tables", "parquet")
 _HEAD = 2**16
 
 

@@ -1,12 +1,15 @@
-"""NumPy's ``.npz``: the arrays of a clip by name, to be loaded without mocapress."""
+"""NumPy's ``.npz``, arrays by name: read from anybody's files, and written from a clip."""
 
 import io
 import json
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapress.formats.array_layout import read_layout
+from mocapress.formats.array_splitting import split_npz
 from mocapress.formats.contract import Format
 from mocapress.formats.table_writing import with_frames
 from mocapress.motion import Clip, Stream
@@ -58,7 +61,10 @@ FORMAT = Format(
     id="npz",
     name="NPZ",
     suffixes=(".npz",),
-    recognises=lambda _: False,
+    # Other zip files, workbooks and the like, begin alike.
+    recognises=lambda head: head.startswith(b"PK\x03\x04") and b".npy" in head[30:286],
+    split=split_npz,
+    read_layout=partial(read_layout, kind="npz"),
     fit=with_frames,
     write=write,
     timed=False,

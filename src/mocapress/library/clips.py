@@ -115,7 +115,7 @@ def by_id(library: "Reading", connection: sqlite3.Connection, clip: int) -> Stor
         [clip],
     ).fetchone()
     if row is None:
-        raise ParameterError("no such clip", file=str(library.path), found=f"id {clip}")
+        raise ParameterError("no such clip", file=library.location, found=f"id {clip}")
     return _stored(library, row)
 
 

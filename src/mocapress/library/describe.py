@@ -26,7 +26,7 @@ def describe_library(library: Library) -> dict[str, Any]:
                 "SELECT coalesce(format, 'clip'), count(*) FROM clips GROUP BY 1 ORDER BY 1"
             )
         )
-    size = library.path.stat().st_size
+    size = library.stored_bytes
     return {
         "clips": clips,
         "formats": ", ".join(f"{number} {kind or 'other'}" for kind, number in kinds.items())
@@ -39,7 +39,7 @@ def describe_library(library: Library) -> dict[str, Any]:
         "library_bytes": size,
         "ratio": raw / size if raw else None,
         "skeletons": skeletons,
-        "texts": texts,
+        "texts": texts or None,
         "companions": companions,
         "models": models or None,
         "labels": ", ".join(f"{name} ({n})" for name, n in library.labels.items()) or None,

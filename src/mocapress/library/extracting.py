@@ -80,6 +80,7 @@ def _companions(library: Library, connection: Connection) -> Iterator[tuple[int,
 
 def _companion(library: Library, number: int, name: str, size: int) -> Callable[[bool], bytes]:
     def read(salvage: bool) -> bytes:  # noqa: ARG001 - a companion is whole or not at all
+        library.fetch((), [number])
         with library.db.reading() as connection:
             row = connection.execute(
                 "SELECT packed FROM texts WHERE id = (SELECT text FROM companions WHERE id = ?)",

@@ -1,6 +1,6 @@
 """A library, open: what users of Python do with it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -35,12 +35,13 @@ if TYPE_CHECKING:
 def open_library(
     path: str | Path, mode: str = READ, *, wait: float = WAIT, models: Sequence[Place] = ()
 ) -> "Library":
-    """Open a library, one file that holds many clips.
+    """Open a library, one file that holds many clips, or a folder of them, a sharded library.
 
     Parameters
     ----------
     path
-        Of the file, usually ``.mocapdb``.
+        Of the file, usually ``.mocapdb``. A folder, a URL such as ``s3://bucket/folder``, or a name
+        that ends with ``/`` is that of a sharded library, which needs ``mocapress[cluster]``.
     mode
         ``"r"`` to read; ``"a"`` to read and write, and to make the file where there is none.
     wait
@@ -65,10 +66,20 @@ def open_library(
     """
     if mode not in (READ, APPEND):
         raise ParameterError("mode", expected="'r' or 'a'", found=repr(mode))
+    if is_sharded(path):
+        from mocapress.library.sharded import open_sharded
+
+        return open_sharded(str(path), mode, wait=wait, models=models)
     path = Path(path)
     if mode == APPEND and not path.exists():
         database.create(path)
     return Library(Database(path, writable=mode == APPEND, wait=wait), models)
+
+
+def is_sharded(path: str | Path) -> bool:
+    """Say whether a name is that of a sharded library: a URL or a folder."""
+    text = str(path)
+    return "://" in text or text.endswith("/") or Path(text).is_dir()
 
 
 class Library(Reading):
@@ -253,18 +264,34 @@ class Library(Reading):
 
     def label(self, clip: Which, *labels: str, remove: Sequence[str] = ()) -> None:
         """Give a clip labels, and take others away."""
-        number = self._id(clip)
+        self.label_all([clip], labels, remove)
+
+    def label_all(
+        self, clips: Iterable[Which], labels: Sequence[str], remove: Sequence[str] = ()
+    ) -> None:
+        """Give clips labels, and take others away, in one transaction."""
         for label in labels:
-            if not label or "," in label or not label.isprintable():
-                raise ParameterError(
-                    "not a label", expected="a word without commas", found=repr(label)
-                )
+            check_label(label)
         with self.db.writing() as connection:
-            rows.insert_labels(connection, number, labels)
-            connection.executemany(
-                "DELETE FROM labels WHERE clip = ? AND label = ?",
-                [(number, label) for label in remove],
-            )
+            for number in map(self._id, clips):
+                rows.insert_labels(connection, number, labels)
+                connection.executemany(
+                    "DELETE FROM labels WHERE clip = ? AND label = ?",
+                    [(number, label) for label in remove],
+                )
+
+
+def check_label(label: str) -> None:
+    """Refuse what is no label.
+
+    Raises
+    ------
+    ParameterError
+        When it is none.
+
+    """
+    if not label or "," in label or not label.isprintable():
+        raise ParameterError("not a label", expected="a word without commas", found=repr(label))
 
 
 def _own_name(source: Source) -> str:

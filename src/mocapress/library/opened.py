@@ -142,14 +142,15 @@ class OpenedClip(Opened):
         if not self.runs_of(stream):
             return super().rows(stream, first, last)
         last = self.frames(stream) if last is None else last
-        values = np.full((max(last - first, 0), len(self.streams[stream].columns)), np.nan)
+        values = np.zeros((max(last - first, 0), len(self.streams[stream].columns)))
         kept = np.zeros(len(values), np.bool_)
         for begin, end, source, source_first in self._pieces(stream):
             start, stop = max(begin, first), min(end, last)
             if start < stop:
                 offset = source_first - begin
                 rows = self._rows_of(source, stream, start + offset, stop + offset)
-                values[start - first : stop - first] = rows.values
+                place = values[start - first : stop - first]
+                np.copyto(place, rows.values, where=rows.kept[:, None])
                 kept[start - first : stop - first] = rows.kept
         return Rows(values, kept)
 

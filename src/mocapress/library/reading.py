@@ -1,6 +1,6 @@
 """A library, open: finding clips in it, loading and checking them."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, overload
@@ -42,6 +42,19 @@ class Reading:
     def path(self) -> Path:
         """Of the file."""
         return self.db.path
+
+    @property
+    def location(self) -> str:
+        """What names it in messages."""
+        return str(self.path)
+
+    @property
+    def stored_bytes(self) -> int:
+        """Bytes of all its files."""
+        return self.path.stat().st_size
+
+    def fetch(self, clips: Iterable[int], companions: Collection[int] = ()) -> None:
+        """See that what these need is here; of a library that is one file everything is."""
 
     def __enter__(self) -> Self:
         return self
@@ -262,7 +275,7 @@ class Reading:
         with self.db.reading() as connection:
             found = names.find(connection, clip)
         if found is None:
-            raise ParameterError("no such clip", file=str(self.path), found=repr(clip))
+            raise ParameterError("no such clip", file=self.location, found=repr(clip))
         return found
 
     @property

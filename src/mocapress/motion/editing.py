@@ -22,6 +22,9 @@ _SIDES = (
 )
 _WHOLE = 1e-6
 """Part of a frame by which a new frame may miss one of the clip, and be taken as that."""
+_PRINTED = 2e-5
+"""Part of a rate by which one may miss a simple ratio because it was printed with few digits:
+0.0083333 seconds are a 120th."""
 _OTHER = {"left": "right", "right": "left", "l": "r", "r": "l"}
 
 
@@ -123,7 +126,9 @@ def resample(clip: Clip, fps: float) -> Clip:
     frame_time = of_rate(fps)
     if clip.frame_time is None:
         raise UnsupportedError("the sampling rate of the clip is not known")
-    step = float(frame_time / Fraction(clip.frame_time))
+    exact = frame_time / Fraction(clip.frame_time)
+    simple = exact.limit_denominator(1000)
+    step = float(simple if abs(simple / exact - 1) < _PRINTED else exact)
     count = int((clip.frames - 1) / step + _WHOLE) + 1 if clip.frames else 0
     at: Array = np.arange(count, dtype=np.float64) * np.float64(step)
     whole = np.abs(at - np.round(at)) < _WHOLE

@@ -5,17 +5,18 @@ from typing import Annotated
 
 import typer
 
-from mocapress.cli.library.opening import File, opened
+from mocapress.cli.library.opening import Cluster, File, opened, sharded
 from mocapress.cli.options import Asf, Debug, Jobs, Json
 
 
 def add(
     file: File,
     inputs: Annotated[
-        list[Path],
+        list[str],
         typer.Argument(
             metavar="FILES...",
-            help="Motion files, folders of them, or tar archives; - is a tar archive on stdin.",
+            help="Motion files, folders of them, or tar archives; - is a tar archive on stdin. Of "
+            "a sharded library files and folders, also as URLs.",
         ),
     ],
     into: Annotated[
@@ -33,6 +34,7 @@ def add(
         list[str] | None,
         typer.Option("--label", help="Label for the clips; may be repeated.", metavar="LABEL"),
     ] = None,
+    cluster: Cluster = None,
     jobs: Jobs = 1,
     json: Json = False,
     debug: Debug = False,
@@ -42,17 +44,40 @@ def add(
     What is there already and has not changed is left alone; what has changed is replaced. Each file
     is written as a whole, so whatever ends the command keeps what is done.
     """
+    from mocapress.cli.batch import usage
     from mocapress.cli.compress import say_what_is_left_out
     from mocapress.cli.library.added import add_all
     from mocapress.cli.library.codec import chosen_codec
     from mocapress.cli.library.inputs import Inputs, endings
     from mocapress.cli.models import open_model
+    from mocapress.library.library import is_sharded
 
     learned = open_model(model) if model else None
     made = chosen_codec(codec, level, learned)
-    found = Inputs(inputs, into.strip("/"), None if asf is None else str(asf))
-    say_what_is_left_out(inputs, endings())
+    if is_sharded(file):
+        from mocapress.cli.library.shards import add_shards
+
+        if asf is not None:
+            usage("a sharded library takes the skeletons that lie beside the files, no other")
+        with opened(file, "a", debug=debug) as library:
+            add_shards(
+                sharded(library, cluster),
+                inputs,
+                into,
+                codec=made,
+                model=learned,
+                labels=label or [],
+                cluster=cluster,
+                jobs=jobs,
+                json=json,
+                debug=debug,
+            )
+        return
+    paths = [Path(name) for name in inputs]
+    found = Inputs(paths, into.strip("/"), None if asf is None else str(asf))
+    say_what_is_left_out(paths, endings())
     with opened(file, "a", debug=debug) as library:
+        sharded(library, cluster)
         adder = library.adder(made, learned, overwrite=True)
 
         add_all(

@@ -1,5 +1,6 @@
 """``library info``."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mocapress.cli.library.opening import File, Patterns, chosen, jobs_of, opened
@@ -18,7 +19,7 @@ def info(file: File, patterns: Patterns = None, json: Json = False, debug: Debug
     with opened(file, debug=debug) as library:
         if not patterns:
             run(
-                [Job(file, file.parent)],
+                [Job(Path(file), Path(file).parent)],
                 lambda _: describe_library(library),
                 json=json,
                 show=show,

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import BinaryIO
 
-from mocapress.cli.batch import STREAM, Job, find, is_folder, usage
+from mocapress.cli.batch import STREAM, Job, find, is_folder, size_of, usage
 from mocapress.container import Companion
 from mocapress.errors import FormatError, ParameterError
 from mocapress.formats import by_name, formats, suffixes
@@ -87,7 +87,7 @@ class Inputs:
     def jobs(self) -> "Sequence[Job] | Iterator[Job]":
         """Give a job for each file; of archives as they are read."""
         if not any(_is_archive(path) for path in self.paths):
-            jobs = [job for path in self.paths for job in find([path], endings()) if _shared(job)]
+            jobs = [job for path in self.paths for job in find([path], endings())]
             _refuse_equal(jobs)
             return jobs
         return self._streamed()
@@ -98,7 +98,6 @@ class Inputs:
                 yield from self._members(path)
             else:
                 for job in find([path], endings()):
-                    _shared(job)
                     yield self._second(str(job.source.relative_to(job.base)), path) or job
 
     def _second(self, name: str, origin: Path) -> Job | None:
@@ -254,19 +253,8 @@ def _is_archive(path: Path) -> bool:
 
 def _files(path: Path) -> Sequence[Job]:
     if _is_archive(path):
-        job = Job(path, path.parent)
-        _shared(job)
-        return [job]
-    return [job for job in find([path], endings()) if _shared(job)]
-
-
-def _shared(job: Job) -> bool:
-    """Count a job by the size of its file."""
-    try:
-        job.share = job.source.stat().st_size
-    except OSError:
-        job.share = 0  # which it will fail at
-    return True
+        return [Job(path, path.parent, share=size_of(path))]
+    return find([path], endings())
 
 
 def _refuse_equal(jobs: Sequence[Job]) -> None:

@@ -33,7 +33,5 @@ def label(
         usage("label: name the clips, or '*' for all")
     with opened(file, "a", debug=debug) as library:
         clips = chosen(library, patterns)
-        with library.db.writing():
-            for clip in clips:
-                library.label(clip, *(add or []), remove=remove or [])
+        library.label_all(clips, add or [], remove or [])
     print(f"{len(clips)} clips")

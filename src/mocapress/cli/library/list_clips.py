@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mocapress.cli.library.opening import File, Label, Patterns, refuse_unknown, telling
+from mocapress.cli.library.opening import File, Label, Patterns, catalogue, refuse_unknown, telling
 from mocapress.cli.options import Debug, Json
 
 if TYPE_CHECKING:
@@ -25,16 +25,14 @@ def list_clips(
     """List clips by name, one a line; with --long the columns are separated by tabs."""
     import json as jsonlib
     import sys
-    from contextlib import closing
     from dataclasses import fields
 
     from mocapress.library.clips import select
-    from mocapress.library.database import WAIT, Database
 
     wanted = patterns or ()
     with (
         telling(file, debug=debug),
-        closing(Database(file, writable=False, wait=WAIT)) as db,
+        catalogue(file) as db,
         db.reading() as connection,
     ):
         clips = select(None, connection, wanted, label=label)

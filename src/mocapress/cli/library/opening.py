@@ -10,11 +10,28 @@ import typer
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
     from mocapress.library import Library, StoredClip
+    from mocapress.library.database import Database
     from mocapress.library.extracting import Item
+    from mocapress.library.sharded import ShardedLibrary
     from mocapress.models import Place
 
+# A text and not a path, as it may be a URL.
 File = Annotated[
-    Path, typer.Argument(metavar="LIB", help="The library, a .mocapdb.", show_default=False)
+    str,
+    typer.Argument(
+        metavar="LIB",
+        help="The library: a .mocapdb, or a folder or URL of a sharded one.",
+        show_default=False,
+    ),
+]
+Cluster = Annotated[
+    str | None,
+    typer.Option(
+        "--cluster",
+        help="Of a sharded library: do the work on a Dask cluster, tcp://HOST:8786, or on N "
+        "workers that are started here, local:N.",
+        metavar="CLUSTER",
+    ),
 ]
 Patterns = Annotated[
     list[str] | None,
@@ -30,7 +47,7 @@ Label = Annotated[
 
 
 @contextmanager
-def telling(path: Path, *, debug: bool) -> Iterator[None]:
+def telling(path: str, *, debug: bool) -> Iterator[None]:
     """End with a line where something fails that is done with a library."""
     from mocapress.cli.report import message, say
     from mocapress.errors import MocapressError
@@ -40,13 +57,13 @@ def telling(path: Path, *, debug: bool) -> Iterator[None]:
     except (MocapressError, OSError, MemoryError) as error:
         if debug:
             raise
-        say(message(error, str(path)))
+        say(message(error, path))
         raise typer.Exit(1) from error
 
 
 @contextmanager
 def opened(
-    path: Path, mode: str = "r", *, debug: bool = False, models: "Sequence[Place]" = ()
+    path: str, mode: str = "r", *, debug: bool = False, models: "Sequence[Place]" = ()
 ) -> "Iterator[Library]":
     """Open a library; see ``telling``."""
     from mocapress.library import open_library
@@ -55,7 +72,39 @@ def opened(
         yield library
 
 
-def refuse_unknown(path: Path, patterns: Sequence[str], fits: Callable[[str], bool]) -> None:
+def sharded(library: "Library", cluster: str | None) -> "ShardedLibrary | None":
+    """Give a library as the sharded one that it is; only such a one is for a cluster."""
+    from mocapress.cli.batch import usage
+    from mocapress.library.library import is_sharded
+
+    if is_sharded(library.location):
+        from mocapress.library.sharded import ShardedLibrary
+
+        assert isinstance(library, ShardedLibrary)
+        return library
+    if cluster is not None:
+        usage("--cluster is for sharded libraries: a URL, or a name that ends with a slash")
+    return None
+
+
+@contextmanager
+def catalogue(path: str) -> "Iterator[Database]":
+    """Give the tables of a library; of one that is one file without loading what reads clips."""
+    from contextlib import closing
+
+    from mocapress.library.database import WAIT, Database
+
+    if "://" in path or Path(path).is_dir():
+        from mocapress.library import open_library
+
+        with open_library(path) as library:
+            yield library.db
+        return
+    with closing(Database(Path(path), writable=False, wait=WAIT)) as db:
+        yield db
+
+
+def refuse_unknown(path: str, patterns: Sequence[str], fits: Callable[[str], bool]) -> None:
     """End where a pattern fits no clip."""
     from mocapress.cli.report import say
 
@@ -69,7 +118,7 @@ def chosen(
     library: "Library", patterns: Sequence[str] | None, label: str | None = None
 ) -> "list[StoredClip]":
     """Give the clips that are asked for; end where a pattern fits none."""
-    refuse_unknown(library.path, patterns or (), lambda pattern: bool(library.clips(pattern)))
+    refuse_unknown(library.location, patterns or (), lambda pattern: bool(library.clips(pattern)))
     return library.clips(patterns or (), label=label)
 
 

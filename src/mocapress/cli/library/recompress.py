@@ -4,7 +4,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mocapress.cli.library.opening import File, Patterns, chosen, jobs_of, opened
+from mocapress.cli.library.opening import (
+    Cluster,
+    File,
+    Patterns,
+    chosen,
+    jobs_of,
+    opened,
+    sharded,
+)
 from mocapress.cli.options import Debug, Jobs, Json, Models
 
 if TYPE_CHECKING:
@@ -21,6 +29,7 @@ def recompress(
         int | None, typer.Option("--level", min=1, max=9, help="1 (fast) to 9 (small).")
     ] = None,
     models: Models = None,
+    cluster: Cluster = None,
     jobs: Jobs = 1,
     json: Json = False,
     debug: Debug = False,
@@ -38,6 +47,14 @@ def recompress(
     made = chosen_codec(codec, level)
     with opened(file, "a", debug=debug, models=open_models(models or [])) as library:
         clips = chosen(library, patterns)
+        shards = sharded(library, cluster)
+        if shards is not None:
+            from mocapress.cli.library.shards import recompress_shards
+
+            recompress_shards(
+                shards, clips, made, cluster=cluster, jobs=jobs, json=json, debug=debug
+            )
+            return
         together: dict[str, tuple[int, int]] = {}
         if made.can.scope is Scope.LIBRARY:
             together = library.recompress_together(clips, made)

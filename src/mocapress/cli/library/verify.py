@@ -2,7 +2,15 @@
 
 from typing import TYPE_CHECKING, Any
 
-from mocapress.cli.library.opening import File, Patterns, chosen, jobs_of, opened
+from mocapress.cli.library.opening import (
+    Cluster,
+    File,
+    Patterns,
+    chosen,
+    jobs_of,
+    opened,
+    sharded,
+)
 from mocapress.cli.options import Debug, Jobs, Json, Models
 
 if TYPE_CHECKING:
@@ -13,6 +21,7 @@ def verify(
     file: File,
     patterns: Patterns = None,
     models: Models = None,
+    cluster: Cluster = None,
     jobs: Jobs = 1,
     json: Json = False,
     debug: Debug = False,
@@ -23,6 +32,13 @@ def verify(
     from mocapress.errors import CorruptError
 
     with opened(file, debug=debug, models=open_models(models or [])) as library:
+        clips = chosen(library, patterns)
+        shards = sharded(library, cluster)
+        if shards is not None:
+            from mocapress.cli.library.shards import verify_shards
+
+            verify_shards(shards, clips, cluster=cluster, jobs=jobs, json=json, debug=debug)
+            return
 
         def work(job: "Job") -> dict[str, Any]:
             faults = library.verify([str(job.source)])
@@ -31,7 +47,7 @@ def verify(
             return {"ok": True}
 
         run(
-            jobs_of(chosen(library, patterns)),
+            jobs_of(clips),
             work,
             threads=jobs,
             json=json,

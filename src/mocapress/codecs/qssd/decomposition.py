@@ -6,6 +6,7 @@ Retrieval", Computer Graphics Forum 31 (2012). ``Products`` is the paper's QSSD;
 interface. docs/papers/qssd.md says how the paper is read where it leaves something open.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -181,6 +182,7 @@ def learn(
     seed: int = 0,
     settled: float = 0.0,
     start: Array | None = None,
+    watch: Callable[[Array], None] = lambda _: None,
 ) -> Learned:
     """Learn a dictionary from frames (Algorithm 4).
 
@@ -203,6 +205,8 @@ def learn(
         Stop when an iteration improves the error by less than this part of it; 0: never.
     start
         (K, J, c) to begin with, instead of chosen frames.
+    watch
+        Is told the dictionary after each iteration.
 
     """
     if start is None:
@@ -222,6 +226,7 @@ def learn(
         dictionary, more = _with_used(space, turns, dictionary, weights)
         replaced += more
         weights = space.code(turns, dictionary, most)
+        watch(dictionary)
         errors.append(mean_degrees(turns, space.combine(dictionary, weights)))
         if errors[-1] == min(errors):
             best = dictionary, weights

@@ -1,0 +1,6 @@
+"""``python -m mocapress``."""
+
+from mocapress.cli import main
+
+if __name__ == "__main__":
+    main()
