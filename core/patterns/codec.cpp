@@ -159,7 +159,7 @@ class Chunk {
       boundaries.push_back(begin);
       check();
     }
-    boundaries.pop_back();
+    if (!boundaries.empty()) boundaries.pop_back();
     smooth(moved, boundaries, count);
     write(node, moved);
   }
