@@ -21,6 +21,8 @@ _COLUMNS = {
     "mAP across": "across",
     "split": "1-NN split",
     "nearest by the same actor": "nearest by the same actor",
+    "mirrored": "mirrored query",
+    "mirrored, option": "with the option",
 }
 
 

@@ -1,0 +1,199 @@
+"""Motion of sixteen standard joints: what clips of any skeleton are compared by."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+
+from mocapress.errors import UnsupportedError
+from mocapress.motion import Clip
+from mocapress.motion.kinematics import positions
+from mocapress.search.joint_names import JOINTS, REQUIRED, SIDED, by_mapping, by_names
+from mocapress.search.topology import by_topology
+
+Array = NDArray[np.float64]
+
+RATE = 30
+"""Frames a second of all that is compared."""
+ASSUMED_RATE = 120.0
+"""Frames a second of a clip that states none, such as an AMC."""
+_CHEST = 0.7
+"""How far from the hips to the neck the chest is, where there is no such joint."""
+_SMOOTH = 5.0
+"""Frames at 30 Hz over which the heading is smoothed (standard deviation)."""
+_USUAL_Y = 1.2
+"""How much longer a body must be along z than along y to be taken to stand along z."""
+_AT = {joint: index for index, joint in enumerate(JOINTS)}
+_LEGS = [[_AT[f"{side}_{joint}"] for joint in SIDED[3:]] for side in ("left", "right")]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StandardMotion:
+    """Sixteen joints (``JOINTS``) at 30 Hz; x to the body's left, y up, z forward; leg lengths."""
+
+    places: Array
+    """(F, 16, 3): from the hips, in axes that turn with the body about the vertical."""
+    root: Array
+    """(F, 3): path of the hips, from above the origin; at the start the body faces z. The lowest
+    ankle of the clip is at height 0."""
+    heading: Array
+    """(F,): radians about the vertical from the first frame's heading, not wrapped."""
+    leg: float
+    """Length of a leg, thigh and shank, in units of the file."""
+    start: float = 0.0
+    """Seconds from the clip's first frame to the first of these."""
+
+    @property
+    def frames(self) -> int:
+        """Number of frames, F."""
+        return len(self.root)
+
+    def __getitem__(self, key: slice) -> "StandardMotion":
+        """Give some of the frames, step 1; path and heading begin anew."""
+        first = range(self.frames)[key].start if self.frames else 0
+        turn = self.heading[first] if self.frames else 0.0
+        root = self.root[key] - (self.root[first] * (1, 0, 1) if self.frames else 0.0)
+        start = self.start + first / RATE
+        return StandardMotion(
+            self.places[key], _turned(root, turn), self.heading[key] - turn, self.leg, start
+        )
+
+    def mirrored(self) -> "StandardMotion":
+        """Give the same motion with left and right exchanged."""
+        sides = len(SIDED)
+        order = [0, 1, 2, 3, *range(4 + sides, 4 + 2 * sides), *range(4, 4 + sides)]
+        flip = np.array([-1.0, 1.0, 1.0])
+        return StandardMotion(
+            self.places[:, order] * flip, self.root * flip, -self.heading, self.leg, self.start
+        )
+
+
+def standard_motion(
+    clip: Clip, mapping: Mapping[str, str] | None = None, rate: float | None = None
+) -> StandardMotion:
+    """Take the standard joints of a clip, at 30 Hz.
+
+    Joints are found by the mapping, else by their names, else by how the body branches. The hips
+    are in the middle between the hip joints.
+
+    Parameters
+    ----------
+    clip
+        With a skeleton, in any units; y up, or z where bodies are much longer along it.
+    mapping
+        Names of standard joints to names in the skeleton, for joints that are not found otherwise.
+    rate
+        Frames a second of the clip if it states none; 120 by default.
+
+    Raises
+    ------
+    ParameterError
+        When the mapping names what is not there.
+    UnsupportedError
+        When there is no skeleton, or bones stretch; when joints are missing, which are named; when
+        there are no frames, or a place is not a number.
+
+    """
+    if clip.skeleton is None:
+        raise UnsupportedError("search needs a skeleton, and the clip has none", file=_name(clip))
+    if not clip.frames:
+        raise UnsupportedError("search needs frames, and the clip has none", file=_name(clip))
+    own_rate = clip.fps or rate or ASSUMED_RATE
+    count = int(Fraction(clip.frames - 1) * RATE / Fraction(own_rate) + Fraction(1, 1000)) + 1
+    moments = np.minimum(np.arange(count) * (own_rate / RATE), clip.frames - 1)
+    before = np.floor(moments + 1e-6).astype(np.intp)
+    part = np.maximum(moments - before, 0.0)
+    needed = np.unique(np.concatenate([before, np.minimum(before + 1, clip.frames - 1)]))
+    if (part < 1e-6).all():
+        needed = before
+    all_places = positions(clip.with_frames(clip.values[needed], clip.frame_time))
+    if not np.isfinite(all_places).all():
+        raise UnsupportedError("search needs places that are numbers", file=_name(clip))
+    found = _correspondence(clip, mapping, all_places[0])
+    places = _sixteen(all_places, found)
+    if needed is not before:
+        low = np.searchsorted(needed, before)
+        high = np.searchsorted(needed, np.minimum(before + 1, clip.frames - 1))
+        share = part[:, None, None]
+        places = places[low] * (1 - share) + places[high] * share
+    return _standing(places, _name(clip))
+
+
+def _correspondence(clip: Clip, mapping: Mapping[str, str] | None, places: Array) -> dict[str, int]:
+    assert clip.skeleton is not None
+    own = by_mapping(clip.skeleton, mapping or {})
+    named = by_names(clip.skeleton) | own
+    missing = [joint for joint in REQUIRED if joint not in named]
+    if not missing:
+        return named
+    found = by_topology(clip.skeleton, places) | own
+    if all(joint in found for joint in REQUIRED):
+        return found
+    raise UnsupportedError(
+        "the skeleton has no joints that correspond to " + ", ".join(missing),
+        file=_name(clip),
+        expected="a body with arms, legs and a head, or a mapping of names (--joints)",
+        found=" ".join(clip.skeleton.names[:20])
+        + (" ..." if len(clip.skeleton.names) > 20 else ""),
+    )
+
+
+def _sixteen(places: Array, found: Mapping[str, int]) -> Array:
+    """Give (F, 16, 3) of (F, J, 3)."""
+    made = np.empty((len(places), len(JOINTS), 3))
+    for joint, index in found.items():
+        made[:, _AT[joint]] = places[:, index]
+    middle = (made[:, _AT["left_shoulder"]] + made[:, _AT["right_shoulder"]]) / 2
+    made[:, 0] = (made[:, _AT["left_hip"]] + made[:, _AT["right_hip"]]) / 2
+    if "neck" not in found:
+        made[:, _AT["neck"]] = middle
+    if "chest" not in found:
+        made[:, _AT["chest"]] = (1 - _CHEST) * made[:, 0] + _CHEST * made[:, _AT["neck"]]
+    return made
+
+
+def _standing(places: Array, name: str | None) -> StandardMotion:
+    ankles = places[:, [leg[2] for leg in _LEGS]]
+    tall = np.abs((places[:, _AT["head"]] - ankles.mean(axis=1)).mean(axis=0))
+    if tall[2] > _USUAL_Y * tall[1]:
+        places = places[..., [0, 2, 1]] * (1, 1, -1)
+        ankles = ankles[..., [0, 2, 1]] * (1, 1, -1)
+    bones = np.linalg.norm(np.diff(places[:, _LEGS], axis=2), axis=-1).sum(axis=2)
+    leg = float(np.median(bones))
+    if not leg > 0:
+        raise UnsupportedError("search needs legs that are longer than 0", file=name)
+    places = places / leg
+    heading = _headings(places)
+    root = places[:, 0] - (places[0, 0, 0], float(ankles[..., 1].min()) / leg, places[0, 0, 2])
+    return StandardMotion(
+        _turned(places - places[:, :1], heading[:, None]),
+        _turned(root, heading[0]),
+        heading - heading[0],
+        leg,
+    )
+
+
+def _headings(places: Array) -> Array:
+    """Give where the body faces, radians about the vertical, by hips and shoulders, smoothed."""
+    left = sum(
+        places[:, _AT[f"left_{joint}"]] - places[:, _AT[f"right_{joint}"]]
+        for joint in ("hip", "shoulder")
+    )
+    # A body that bends sideways has little that is level, so it counts little in the mean.
+    smooth = gaussian_filter1d(np.asarray(left)[:, [0, 2]], _SMOOTH, axis=0, mode="nearest")
+    headings: Array = np.unwrap(np.arctan2(-smooth[:, 1], smooth[:, 0]))
+    return headings
+
+
+def _turned(places: Array, heading: Array | np.float64 | float) -> Array:
+    """Turn back by a heading about the vertical."""
+    cos, sin = np.cos(heading), np.sin(heading)
+    x, y, z = places[..., 0], places[..., 1], places[..., 2]
+    return np.stack([cos * x - sin * z, y, sin * x + cos * z], axis=-1)
+
+
+def _name(clip: Clip) -> str | None:
+    return clip.name or None

@@ -1,0 +1,130 @@
+"""The sixteen standard joints: the same for the same motion, whatever the skeleton and the file."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from people import STYLES, named, person
+
+from mocapress.errors import ParameterError, UnsupportedError
+from mocapress.motion import Skeleton
+from mocapress.search.joint_names import read_mapping
+from mocapress.search.standard import standard_motion
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_names_of_all_systems_mean_the_same_joints(style: str) -> None:
+    same = standard_motion(person(3, style=style))
+    expected = standard_motion(person(3, style="LaFAN"))
+    for joint in range(4, 16):
+        assert same.places[:, joint] == pytest.approx(expected.places[:, joint], abs=1e-9), joint
+    assert same.root == pytest.approx(expected.root, abs=1e-9)
+
+
+def test_size_and_heading_and_place_do_not_count() -> None:
+    one = standard_motion(person(1))
+    other = standard_motion(person(1, size=0.01, turned=0))
+    assert other.places == pytest.approx(one.places, abs=1e-9)
+    turned = standard_motion(person(1, turned=130))
+    assert turned.leg == pytest.approx(one.leg)
+    assert np.linalg.norm(turned.places, axis=2) == pytest.approx(
+        np.linalg.norm(one.places, axis=2), abs=1e-9
+    )
+
+
+def test_the_frame_rate_does_not_count() -> None:
+    slow = standard_motion(person(2, frames=61, fps=30))
+    fast = standard_motion(person(2, frames=241, fps=120))
+    odd = standard_motion(person(2, frames=101, fps=50))
+    assert slow.frames == fast.frames == odd.frames == 61
+    assert fast.places == pytest.approx(slow.places, abs=1e-9)
+    assert np.abs(odd.places - slow.places).max() < 0.02
+
+
+def test_hips_are_in_the_middle_and_the_lowest_ankle_stands_on_the_floor() -> None:
+    motion = standard_motion(person(4))
+    assert motion.places[:, 0] == pytest.approx(0)
+    assert motion.places[:, 7] + motion.places[:, 13] == pytest.approx(0, abs=1e-9)
+    ankles = motion.root[:, None, 1] + motion.places[:, [9, 15], 1]
+    assert ankles.min() == pytest.approx(0)
+    assert motion.root[0, [0, 2]] == pytest.approx(0)
+
+
+def test_z_up_is_seen() -> None:
+    clip = person(5)
+    assert clip.skeleton is not None
+    tilted = [
+        replace(j, offset=(j.offset[0], -j.offset[2], j.offset[1])) for j in clip.skeleton.joints
+    ]
+    still = person(5, still=True)
+    flat = clip.with_values(0 * still.values)
+    upright = standard_motion(flat)
+    lying = standard_motion(replace(flat, skeleton=Skeleton(tuple(tilted))))
+    assert lying.places == pytest.approx(upright.places, abs=1e-9)
+
+
+def test_mirroring_exchanges_sides_and_comes_back() -> None:
+    motion = standard_motion(person(6))
+    mirrored = motion.mirrored()
+    assert mirrored.places[:, 5] == pytest.approx(motion.places[:, 11] * (-1, 1, 1))
+    assert mirrored.mirrored().places == pytest.approx(motion.places)
+
+
+def test_a_stretch_begins_anew() -> None:
+    motion = standard_motion(person(7, frames=90))
+    part = motion[30:60]
+    assert part.frames == 30
+    assert part.start == 1
+    assert part.root[0, [0, 2]] == pytest.approx(0)
+    assert part.heading[0] == 0
+    assert np.linalg.norm(np.diff(part.root, axis=0), axis=1) == pytest.approx(
+        np.linalg.norm(np.diff(motion.root[30:60], axis=0), axis=1)
+    )
+
+
+@pytest.mark.parametrize("frames", [1, 2])
+def test_few_frames_are_enough(frames: int) -> None:
+    assert standard_motion(person(0, frames=frames)).frames == frames
+
+
+def test_missing_joints_are_named() -> None:
+    lame = person(0, without=("left_wrist", "right_ankle", "right_toe"))
+    with pytest.raises(UnsupportedError, match=r"correspond to left_wrist, right_ankle"):
+        standard_motion(lame)
+
+
+def test_no_skeleton_and_no_frames_are_told() -> None:
+    clip = person(0)
+    with pytest.raises(UnsupportedError, match="needs a skeleton"):
+        standard_motion(replace(clip, skeleton=None))
+    with pytest.raises(UnsupportedError, match="needs frames"):
+        standard_motion(clip[:0])
+
+
+def test_a_mapping_names_joints_that_nothing_else_tells(tmp_path: Path) -> None:
+    lame = person(0, without=("left_wrist", "right_wrist"))
+    names = named("LaFAN")
+    mapping = {"left_wrist": names["left_elbow"], "right_wrist": names["right_elbow"]}
+    mapped = standard_motion(lame, mapping)
+    assert mapped.places[:, 6] == pytest.approx(mapped.places[:, 5])
+    file = tmp_path / "joints.json"
+    file.write_text('{"left_wrist": "LeftForeArm", "right_wrist": "RightForeArm"}')
+    assert read_mapping(file) == mapping
+
+
+@pytest.mark.parametrize(
+    ("mapping", "told"),
+    [({"tail": "Hips"}, "no standard joint: tail"), ({"head": "Nose"}, "that the skeleton lacks")],
+)
+def test_a_mapping_of_what_is_not_there_is_refused(mapping: dict[str, str], told: str) -> None:
+    with pytest.raises(ParameterError, match=told):
+        standard_motion(person(0), mapping)
+
+
+@pytest.mark.parametrize("text", ["[]", "{", '{"head": 1}', "[" * 10000])
+def test_a_mapping_file_that_is_none_is_refused(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "joints.json"
+    file.write_text(text)
+    with pytest.raises(ParameterError):
+        read_mapping(file)
