@@ -1,6 +1,7 @@
 """Sharded libraries: what is put in comes out, and every change is seen whole or not at all."""
 
 import json
+import multiprocessing
 import pickle
 import shutil
 import sqlite3
@@ -268,3 +269,21 @@ def test_parts_of_a_database_give_its_values(tmp_path: Path, size: int) -> None:
         parts = [data[place.begin : place.begin + place.size] for place in places[number]]
         assert joined(parts, places[number], len(value), schema.PAGE) == value
         assert len(parts) <= 2
+
+
+OPEN: list[mp.Library] = []
+
+
+def inherited(name: str) -> bytes:
+    return OPEN[0].read_bytes(name)
+
+
+def test_a_fork_reads_on_its_own(lib: str, raw: Path) -> None:
+    context = multiprocessing.get_context("fork")
+    with mp.open_library(lib) as library:
+        OPEN[:] = [library]
+        with context.Pool(2) as pool:
+            found = pool.map(inherited, ["walks/01.amc", "walks/02.amc", "walks/01.amc"])
+        wanted = [(raw / f"walks/0{n}.amc").read_bytes() for n in (1, 2, 1)]
+        assert found == wanted
+        assert library.read_bytes("walks/01.amc") == wanted[0]

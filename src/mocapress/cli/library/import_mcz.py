@@ -28,14 +28,18 @@ def import_mcz(
     debug: Debug = False,
 ) -> None:
     """Add the clips of .mcz files as they are coded, once they are checked."""
-    from mocapress.cli.batch import find
+    from mocapress.cli.batch import find, usage
     from mocapress.cli.library.added import add_all
     from mocapress.cli.models import open_models, places_for
     from mocapress.errors import CorruptError
     from mocapress.library.adding import Extra
-    from mocapress.library.library import modified_of
+    from mocapress.library.library import is_sharded, modified_of
     from mocapress.source import MCZ
 
+    if is_sharded(file):
+        usage(
+            "import: a sharded library takes motion files; .mcz files are for one that is one file"
+        )
     given = open_models(models or [])
     with opened(file, "a", debug=debug) as library:
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from importlib import import_module
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context
 from typing import Any, Protocol, TypeVar
 
 from mocapress.errors import ParameterError, UnsupportedError
@@ -26,9 +26,15 @@ class Executor(Protocol):
     def call(self, work: Callable[[T], R], task: T) -> R:
         """Run a task somewhere, and wait for its result, or raise its error."""
 
+    def stop(self) -> None:
+        """End what runs on this machine, as this process ends at once."""
+
 
 class _Here:
     width = 1
+
+    def stop(self) -> None:
+        pass
 
     def call(self, work: Callable[[T], R], task: T) -> R:
         return work(task)
@@ -40,6 +46,10 @@ class _Processes:
 
     def call(self, work: Callable[[T], R], task: T) -> R:
         return self._pool.submit(work, task).result()
+
+    def stop(self) -> None:
+        for process in active_children():
+            process.terminate()
 
 
 class _Dask:
@@ -53,6 +63,9 @@ class _Dask:
         future = self._client.submit(work, task, pure=False)
         found: R = future.result()
         return found
+
+    def stop(self) -> None:
+        pass  # workers that were started here end with their parent
 
 
 @contextmanager

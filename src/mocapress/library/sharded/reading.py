@@ -25,6 +25,9 @@ from mocapress.source import LIMIT
 if TYPE_CHECKING:
     import pandas as pd
 
+REQUESTS = 3
+"""For the values of a clip, at most."""
+
 
 class ShardedReading(Library):
     """A library of shards in a folder or in object storage; see ``open_library``.
@@ -56,7 +59,7 @@ class ShardedReading(Library):
         """Make the library on this machine of what the manifest says."""
         self.manifest = found
         file = Path(self._folder.name, f"{found.number}.mocapdb")
-        self._row, self._models = fill(file, found)
+        self._row, self._models = fill(file, found, self.url)
         self._there: set[tuple[str, int]] = set()
         db = Database(file, writable=False, wait=self.wait, limit=self.limit)
         super().__init__(db, models)
@@ -170,8 +173,9 @@ class ShardedReading(Library):
             file = shard_file(shard)
             lists = [unflattened(rows[index][f"{what}_places"]) for index, what in keys]
             spans = [(place.begin, place.begin + place.size) for each in lists for place in each]
+            most = REQUESTS * len({index for index, _ in keys})
             try:
-                parts = iter(self.store.parts(file, spans))
+                parts = iter(self.store.parts(file, spans, most))
             except FileNotFoundError as error:
                 raise missing_shard(self.store, self.manifest, shard) from error
             for (index, what), each in zip(keys, lists, strict=True):

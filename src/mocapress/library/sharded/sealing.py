@@ -18,11 +18,11 @@ from mocapress.library.rows import Facts, read_clip
 from mocapress.library.sharded.manifest import CLIP, COMPANION, MODEL
 from mocapress.library.sharded.places import Place, joined, last_values
 
-_FIRST = (
-    *("skeletons", "companions", "clips", "belongs", "labels", "notes"),
-    *("runs", "needs", "anchors"),
-)
-"""Tables of small rows, which stand before the values that are read alone."""
+_OTHERS = """
+SELECT name FROM made.sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%'
+    AND name NOT IN ('migrations', 'texts', 'chunks') ORDER BY name
+"""
+"""Tables that stand before the values that are read alone."""
 _SMALL = 900
 """Bytes up to which a text is in the manifest, too, and is not read from the shard."""
 
@@ -38,9 +38,8 @@ def seal(source: Database, target: Path) -> str:
         connection.execute("BEGIN")
         # When it was made says nothing of what is in it.
         connection.execute("UPDATE main.migrations SET applied = ''")
-        for table in _FIRST:
-            _copy(connection, table)
-        _copy(connection, "models")
+        for (table,) in connection.execute(_OTHERS).fetchall():
+            _copy(connection, table.decode())
         texts = connection.execute("SELECT DISTINCT text FROM made.companions ORDER BY 1")
         for (text,) in texts.fetchall():
             _copy(connection, "texts", "id", text)
