@@ -43,7 +43,7 @@ class StoredMcz(Source):
         if found is None:
             raise ParameterError("no such clip", file=str(db.path), found=f"id {clip}")
         self.facts: Facts = found[0]
-        super().__init__(b"", self.facts.name)
+        super().__init__(b"", self.facts.name, limit=db.limit)
         self.sound = checksum(self.facts) == found[1]
         """Whether the row of the clip has the right checksum."""
         if not self.sound and not (salvage and _possible(self.facts)):

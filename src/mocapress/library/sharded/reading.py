@@ -20,6 +20,7 @@ from mocapress.library.sharded.places import joined
 from mocapress.library.sharded.sealing import unflattened
 from mocapress.library.sharded.store import Store
 from mocapress.models import Place
+from mocapress.source import LIMIT
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,9 +37,15 @@ class ShardedReading(Library):
     """
 
     def __init__(
-        self, url: str, mode: str = READ, *, wait: float = WAIT, models: Sequence[Place] = ()
+        self,
+        url: str,
+        mode: str = READ,
+        *,
+        wait: float = WAIT,
+        models: Sequence[Place] = (),
+        limit: int | None = LIMIT,
     ) -> None:
-        self.url, self.mode, self.wait = url, mode, wait
+        self.url, self.mode, self.wait, self.limit = url, mode, wait, limit
         self.store = Store(url)
         self._lock = threading.RLock()
         self._folder = tempfile.TemporaryDirectory(prefix="mocapress-", ignore_cleanup_errors=True)
@@ -54,7 +61,8 @@ class ShardedReading(Library):
         file = Path(self._folder.name, f"{found.number}.mocapdb")
         self._row, self._models = fill(file, found, self.url)
         self._there: set[tuple[str, int]] = set()
-        super().__init__(Database(file, writable=False, wait=self.wait), models)
+        db = Database(file, writable=False, wait=self.wait, limit=self.limit)
+        super().__init__(db, models)
 
     def refresh(self, found: Manifest) -> None:
         """Be what a newer manifest says."""
@@ -80,7 +88,13 @@ class ShardedReading(Library):
         self._folder.cleanup()
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"url": self.url, "mode": self.mode, "wait": self.wait, "models": self.models}
+        return {
+            "url": self.url,
+            "mode": self.mode,
+            "wait": self.wait,
+            "models": self.models,
+            "limit": self.limit,
+        }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state)  # type: ignore[misc]
