@@ -1,73 +1,98 @@
-"""Parts and levels of a body, as joints of ``Take.turns``."""
+"""What the methods of others see of clips: turns of joints or of bones, parts and levels."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapress.codecs.qssd.quaternions import logarithm
+from mocapress.search.joint_names import JOINTS
+from mocapress.search.qssd import ABOVE, displacements
 from mocapress_bench.search_data import Take
 
 Array = NDArray[np.float64]
+_LEVELS = 3
 
 
-def moved_by(take: Take) -> Array:
-    """Give how far each joint but the root moves the body: mean distance of what hangs on it."""
-    skeleton = take.clip.skeleton
+@dataclass(frozen=True, slots=True)
+class Bodies:
+    """Clips of one body, seen by what turns: joints, or bones."""
+
+    logs: list[Array]
+    """(F, J, 3) of each clip: logarithms of turns from the clip's mean pose, 30 frames a second.
+    QSSD is given turns from the mean pose, too; without that all methods here are worse."""
+    weights: Array
+    """(J,): how much of the body each moves."""
+    parts: list[tuple[list[int], float]]
+    """Limbs, trunk, halves and the whole, and what each counts."""
+    levels: list[list[int]]
+    """Those near the root, in the middle, and far from it."""
+
+
+def of_joints(takes: Sequence[Take]) -> Bodies:
+    """See turns of joints relative to their parents; the skeleton is one of CMU's."""
+    skeleton = takes[0].clip.skeleton
     assert skeleton is not None
-    places = take.places[0]
-    reach = np.zeros(len(skeleton.joints))
-    for i in range(len(skeleton.joints)):
-        above = i
-        while above >= 0:
-            reach[above] += np.linalg.norm(places[i] - places[above]) / len(reach)
-            above = skeleton.joints[above].parent
-    moved: Array = np.maximum(reach[1:], 1e-3 * reach.max())
-    return moved
+    above = list(skeleton.parents)
+    names = [name.lower() for name in skeleton.names]
+    arms = [_below(names.index(f"{side}clavicle"), above) for side in "lr"]
+    legs = [_below(names.index(f"{side}femur"), above) for side in "lr"]
+    places = takes[0].places[0]
+    reach = np.zeros(len(above))
+    for i in range(len(above)):
+        for joint in _way_up(i, above):
+            reach[joint] += np.linalg.norm(places[i] - places[joint]) / len(above)
+    return Bodies(
+        [logarithm(displacements(take.turns)) for take in takes],
+        np.maximum(reach[1:], 1e-3 * reach.max()),
+        _parts(arms, legs, len(above)),
+        _levels(above),
+    )
 
 
-def parts_of(take: Take) -> list[tuple[list[int], float]]:
-    """Give limbs, halves and the whole body, and what each counts."""
-    below = _below(take)
-    names = _names(take)
-    arms = [
-        below(next(n for n in names if n.startswith(side) and "clavicle" in n)) for side in "lr"
-    ]
-    legs = [below(next(n for n in names if n.startswith(side) and "femur" in n)) for side in "lr"]
-    limbs = {i for limb in (*arms, *legs) for i in limb}
-    trunk = [i for i in range(len(names)) if i not in limbs]
-    upper = sorted({*arms[0], *arms[1], *trunk})
-    lower = sorted({*legs[0], *legs[1]})
+def of_bones(takes: Sequence[Take]) -> Bodies:
+    """See turns of the bones between standard joints, as the product's QSSD does."""
+    above = [-1, *ABOVE]
+    arms = [_below(JOINTS.index(f"{side}_shoulder"), above) for side in ("left", "right")]
+    legs = [_below(JOINTS.index(f"{side}_hip"), above) for side in ("left", "right")]
+    return Bodies(
+        [logarithm(displacements(take.bones)) for take in takes],
+        np.ones(len(ABOVE)),
+        _parts(arms, legs, len(above)),
+        _levels(above),
+    )
+
+
+Seen = Callable[[Sequence[Take]], Bodies]
+
+
+def _parts(
+    arms: list[list[int]], legs: list[list[int]], count: int
+) -> list[tuple[list[int], float]]:
+    """Give parts without the root, whose turns no clip has: numbers are less by 1."""
+    limbs = {joint for limb in (*arms, *legs) for joint in limb}
+    trunk = [joint for joint in range(1, count) if joint not in limbs]
     small = [(part, 1.0) for part in (*arms, *legs, trunk)]
-    return [*small, (upper, 2.0), (lower, 2.0), (list(range(len(names))), 4.0)]
+    halves = [(arms[0] + arms[1] + trunk, 2.0), (legs[0] + legs[1], 2.0)]
+    whole = (list(range(1, count)), 4.0)
+    return [([joint - 1 for joint in part], w) for part, w in (*small, *halves, whole)]
 
 
-def levels_of(take: Take) -> list[list[int]]:
-    """Give joints of ``turns`` by how many joints lie above them: near the root, middle, far."""
-    skeleton = take.clip.skeleton
-    assert skeleton is not None
-    depth = [0] * len(skeleton.joints)
-    for i, joint in enumerate(skeleton.joints[1:], 1):
-        depth[i] = depth[joint.parent] + 1
-    cuts = [(1, 2), (3, 4), (5, max(depth))]
-    return [[i - 1 for i, d in enumerate(depth) if i and a <= d <= b] for a, b in cuts]
+def _levels(above: Sequence[int]) -> list[list[int]]:
+    depths = np.array([len(_way_up(i, above)) for i in range(1, len(above))])
+    order = np.argsort(depths, kind="stable")
+    return [sorted(level.tolist()) for level in np.array_split(order, _LEVELS)]
 
 
-def _names(take: Take) -> list[str]:
-    assert take.clip.skeleton is not None
-    return [name.lower() for name in take.clip.skeleton.names[1:]]
+def _below(top: int, above: Sequence[int]) -> list[int]:
+    return [i for i in range(len(above)) if top in _way_up(i, above)]
 
 
-def _below(take: Take) -> Callable[[str], list[int]]:
-    skeleton = take.clip.skeleton
-    assert skeleton is not None
-    names = _names(take)
-
-    def below(name: str) -> list[int]:
-        top = names.index(name) + 1
-        found = [top]
-        for i in range(top + 1, len(skeleton.joints)):
-            if skeleton.joints[i].parent in found:
-                found.append(i)
-        return [i - 1 for i in found]
-
-    return below
+def _way_up(joint: int, above: Sequence[int]) -> list[int]:
+    """Give a joint and all above it."""
+    way = []
+    while joint >= 0:
+        way.append(joint)
+        joint = above[joint]
+    return way

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 import mocapress as mp
 from mocapress.errors import MocapressError, ParameterError
 from mocapress.motion.kinematics import positions, rotations
+from mocapress.search.qssd import bone_turns
+from mocapress.search.standard import standard_motion
 
 Array = NDArray[np.float64]
 
@@ -31,6 +33,8 @@ class Take:
     clip: mp.Clip
     turns: Array
     """(F, J, 4) rotations relative to the parents, without the root's; 30 frames a second."""
+    bones: Array
+    """(F, 15, 4) turns of bones between standard joints; 30 frames a second."""
     places: Array
     """(F, J, 3) positions of joints, centimetres, y up; 30 frames a second."""
 
@@ -40,7 +44,15 @@ def take_of(path: Path, clip: mp.Clip, label: str, actor: str) -> Take:
     few = clip.with_frames(clip.values[::EVERY], clip.frame_time)
     unit = clip.skeleton.length_unit if clip.skeleton else None
     scale = 2.54 / unit if unit else 1.0
-    return Take(path, label, actor, clip, rotations(few, local=True)[:, 1:], scale * positions(few))
+    return Take(
+        path,
+        label,
+        actor,
+        clip,
+        rotations(few, local=True)[:, 1:],
+        bone_turns(standard_motion(clip).places),
+        scale * positions(few),
+    )
 
 
 def read_cuts(folder: Path, progress: Callable[[str], None] = lambda _: None) -> list[Take]:

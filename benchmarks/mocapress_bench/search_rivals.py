@@ -12,10 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.cluster.vq import kmeans2
 
-from mocapress.codecs.qssd.quaternions import logarithm
-from mocapress.search.qssd import displacements
 from mocapress_bench.search_alignment import Clips
-from mocapress_bench.search_bodies import levels_of, moved_by, parts_of
+from mocapress_bench.search_bodies import Bodies
 from mocapress_bench.search_data import Take
 
 Array = NDArray[np.float64]
@@ -31,18 +29,19 @@ class Index:
     """Of the clip with this number from all clips, (N,)."""
     bytes: float
     """Kept of a clip, on average."""
+    mirrored: Callable[[int], Array] | None = None
+    """The distances of the clip with left and right exchanged, where a method can tell them."""
 
 
-def weighted_pca(takes: Sequence[Take], seed: int) -> Index:  # noqa: ARG001
+def weighted_pca(bodies: Bodies, seed: int) -> Index:  # noqa: ARG001
     """Index by weighted PCA (K. Forbes, E. Fiume: An efficient search algorithm, 2005).
 
     Logarithms of joints' turns, weighted by how much of the body a joint moves, in the space of the
     principal components of all frames that hold nine tenths of the variance; aligned by dynamic
     time warping.
     """
-    weights = np.sqrt(moved_by(takes[0]))[:, None]
-    rows = [(logs_of(take)[::_EVERY] * weights).reshape(-1, 3 * len(weights)) for take in takes]
-    rows = principal(rows, 0.9)
+    weights = np.sqrt(bodies.weights)[:, None]
+    rows = principal([logs[::_EVERY] * weights for logs in bodies.logs], 0.9)
     clips = Clips(rows, euclidean)
     return Index(lambda i: clips.distances(rows[i]), _bytes(rows))
 
@@ -79,17 +78,18 @@ def between_clouds(a: Array, b: Array) -> Array:
     return distances
 
 
-def motion_patterns(takes: Sequence[Take], seed: int) -> Index:
+def motion_patterns(bodies: Bodies, seed: int) -> Index:
     """Index by motion patterns (Z. Deng, Q. Gu, Q. Li: Perceptually consistent retrieval, 2009).
 
     The motion of each part of the body, from a limb to the whole, is cut where it is slowest, and
     the pieces are grouped into patterns. A clip is a string of patterns for each part; strings are
     aligned, and the parts' distances added up, larger parts counting more.
     """
-    total = np.zeros((len(takes), len(takes)))
+    clip_count = len(bodies.logs)
+    total = np.zeros((clip_count, clip_count))
     kept = 0.0
-    for joints, weight in parts_of(takes[0]):
-        logs = [logs_of(take)[:, joints].reshape(len(take.turns), -1) for take in takes]
+    for joints, weight in bodies.parts:
+        logs = [own[:, joints].reshape(len(own), -1) for own in bodies.logs]
         pieces = [_pieces(own) for own in logs]
         strings = [
             np.array([_resampled(own[a:b], 8) for a, b in cut])
@@ -104,11 +104,11 @@ def motion_patterns(takes: Sequence[Take], seed: int) -> Index:
         clips = Clips(words, partial(_between_words, euclidean(centres, centres)))
         part = np.array([clips.distances(word) for word in words])
         total += weight * part / max(float(part.mean()), 1e-12)
-        kept += sum(len(word) for word in words) / len(takes)
+        kept += sum(len(word) for word in words) / clip_count
     return Index(lambda i: total[i], kept)
 
 
-def motion_index_tree(takes: Sequence[Take], seed: int) -> Index:  # noqa: ARG001
+def motion_index_tree(bodies: Bodies, seed: int) -> Index:  # noqa: ARG001
     """Index by a motion index tree (F. Liu, Y. Zhuang, F. Wu, Y. Pan, 2003).
 
     Key frames are aligned, one level of the skeleton after the other: clips are grouped by the
@@ -116,12 +116,12 @@ def motion_index_tree(takes: Sequence[Take], seed: int) -> Index:  # noqa: ARG00
     come first, then those that parted from it on the last level, and so on up; among these, the
     nearest of all joints.
     """
-    rows = [key_frames(logs_of(take)[::_EVERY]) for take in takes]
+    rows = [key_frames(logs[::_EVERY]) for logs in bodies.logs]
     clips = Clips(rows, lambda a, b: euclidean(a.reshape(len(a), -1), b.reshape(len(b), -1)))
     near = np.array([clips.distances(row) for row in rows])
-    groups = np.zeros(len(takes), dtype=np.int64)
-    shared = np.zeros((len(takes), len(takes)))
-    for joints in levels_of(takes[0]):
+    groups = np.zeros(len(rows), dtype=np.int64)
+    shared = np.zeros((len(rows), len(rows)))
+    for joints in bodies.levels:
         own = [row[:, joints].reshape(len(row), -1) for row in rows]
         level = Clips(own, euclidean)
         apart = np.array([level.distances(row) for row in own])
@@ -131,16 +131,16 @@ def motion_index_tree(takes: Sequence[Take], seed: int) -> Index:  # noqa: ARG00
     return Index(lambda i: depth[i], _bytes(rows))
 
 
-def motion_words(takes: Sequence[Take], seed: int) -> Index:
+def motion_words(bodies: Bodies, seed: int) -> Index:
     """Index by motion words (A. Aristidou et al.: Deep motifs, 2018), without their network.
 
     Windows of 16 frames, principal components of them, and the nearest of 100 words; clips are
     compared by how often they use each word. In the paper a network learns the windows' space.
     """
     length, step = 16, 4
-    logs = [logs_of(take).reshape(len(take.turns), -1) for take in takes]
     windows = []
-    for own in logs:
+    for logs in bodies.logs:
+        own = logs.reshape(len(logs), -1)
         if len(own) < length:
             own = own[np.minimum(np.arange(length), len(own) - 1)]
         firsts = range(0, len(own) - length + 1, step)
@@ -151,19 +151,10 @@ def motion_words(takes: Sequence[Take], seed: int) -> Index:
     _, words = kmeans2(every, count, minit="++", seed=seed)
     ends = np.cumsum([len(row) for row in rows])
     used = np.array([np.bincount(own, minlength=count) for own in np.split(words, ends[:-1])])
-    rare = np.log(len(takes) / np.maximum((used > 0).sum(axis=0), 1)) + 1
+    rare = np.log(len(used) / np.maximum((used > 0).sum(axis=0), 1)) + 1
     frequent = np.sqrt(used / used.sum(axis=1, keepdims=True) * rare)
     frequent /= np.linalg.norm(frequent, axis=1, keepdims=True)
     return Index(lambda i: 1 - frequent @ frequent[i], 2.0 * count)
-
-
-def logs_of(take: Take) -> Array:
-    """Give logarithms of joints' turns from the clip's mean pose, (F, J, 3).
-
-    QSSD is given turns from the mean pose, too; without that the methods here that look at turns
-    are worse.
-    """
-    return logarithm(displacements(take.turns))
 
 
 def euclidean(a: Array, b: Array) -> Array:
@@ -208,7 +199,7 @@ def _parted(groups: NDArray[np.int64], apart: Array) -> NDArray[np.int64]:
     """Part groups: a clip joins the nearest first clip of a group within reach, or begins one."""
     made = np.full(len(groups), -1, dtype=np.int64)
     new = 0
-    reach = float(np.median(apart))
+    reach = float(np.quantile(apart, 0.8))
     for group in np.unique(groups):
         firsts: list[int] = []
         for clip in np.flatnonzero(groups == group):

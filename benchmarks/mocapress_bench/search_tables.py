@@ -21,6 +21,8 @@ _COLUMNS = {
     "mAP across": "across",
     "split": "1-NN split",
     "nearest by the same actor": "nearest by the same actor",
+    "mirrored": "mirrored query",
+    "mirrored, option": "with the option",
 }
 
 
@@ -90,5 +92,5 @@ def draw(named: dict[str, tuple[list[str], NDArray[np.float64]]], path: Path) ->
         axes.set_title(f"{name}, %")
         axes.set_xlabel("found")
         axes.set_ylabel("asked for")
-    figure.savefig(path, dpi=90)
+    figure.savefig(path, dpi=70, bbox_inches="tight")
     plt.close(figure)

@@ -141,12 +141,14 @@ def test_the_command_ranks_by_all_methods(cuts: Path, tmp_path: Path) -> None:
     assert [row["method"] for row in found["HDM05"]] == list(METHODS)
     by = {row["method"]: row for row in found["HDM05"]}
     assert by["match webs (Kovar 2004)"]["true positives"] == 100
-    assert by["QSSD"]["true positives"] > 60
+    assert by["QSSD of bones"]["true positives"] > 60
     assert by["QSSD"]["bytes"] > 0
     (stretches,) = found["stretches"]
     assert stretches["recall at R"] > 90
     assert stretches["IoU"] > 0.8
-    assert np.sum(found["confusion"]["QSSD"]["per cent"], axis=1) == pytest.approx(100, abs=0.1)
+    assert np.sum(found["confusion"]["QSSD of bones"]["per cent"], axis=1) == pytest.approx(
+        100, abs=0.1
+    )
 
 
 def test_a_folder_without_labels_is_refused(tmp_path: Path) -> None:

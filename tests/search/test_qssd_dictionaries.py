@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from mocapress.codecs.qssd.quaternions import exponential, product
-from mocapress.search.qssd import dictionary_of, distances
+from mocapress.codecs.qssd.quaternions import conjugate, exponential, product, turned_degrees
+from mocapress.search.joint_names import JOINTS
+from mocapress.search.qssd import bone_turns, dictionary_of, distances, mirrored
 
 Array = NDArray[np.float64]
 
@@ -69,3 +70,50 @@ def test_a_seed_begins_as_published() -> None:
     clip = swing(2)
     assert (dictionary_of(clip, seed=1) == dictionary_of(clip, seed=1)).all()
     assert (dictionary_of(clip, seed=1) != dictionary_of(clip, seed=2)).any()
+
+
+def test_bones_turn_from_their_mean_direction() -> None:
+    elbow, wrist = JOINTS.index("left_elbow"), JOINTS.index("left_wrist")
+    places = np.zeros((3, 16, 3))
+    places[:, :, 1] = np.arange(16)
+    angles = np.radians([-50, 0, 50])
+    places[:, wrist] = places[:, elbow] + 2 * np.stack(
+        [np.cos(angles), np.sin(angles), 0 * angles], axis=-1
+    )
+    turns = bone_turns(places)
+    assert np.linalg.norm(turns, axis=-1) == pytest.approx(1)
+    still = np.array([1.0, 0, 0, 0])
+    assert turned_degrees(turns[:, wrist - 1], still) == pytest.approx([50, 0, 50], abs=1e-6)
+    vectors = np.pad(places[:, wrist] - places[:, elbow], [(0, 0), (1, 0)])
+    own = turns[:, wrist - 1]
+    back = product(product(conjugate(own), vectors), own)
+    assert back[:, 1:] == pytest.approx(np.broadcast_to([2.0, 0, 0], (3, 3)))
+
+
+def test_bones_without_length_and_opposite_ones_have_turns() -> None:
+    places = np.zeros((3, 16, 3))
+    places[:, 1, 1] = (1, 1, -1)
+    turns = bone_turns(places)
+    assert np.linalg.norm(turns, axis=-1) == pytest.approx(1)
+    assert turned_degrees(turns[2, 0], np.array([1.0, 0, 0, 0])) == pytest.approx(180)
+
+
+def test_a_mirrored_clip_has_the_mirrored_dictionary() -> None:
+    random = np.random.default_rng(4)
+    waves = np.sin(np.linspace(0, 6, 60)[:, None] * (1, 2))
+    places = random.normal(size=(16, 3)) + np.einsum(
+        "fk,kjc->fjc", waves, random.normal(size=(2, 16, 3))
+    )
+    order = [JOINTS.index(other(joint)) for joint in JOINTS]
+    flipped = places[:, order] * (-1, 1, 1)
+    own = dictionary_of(bone_turns(places))
+    found = distances(dictionary_of(bone_turns(flipped)), np.array([mirrored(own), own]))
+    assert found[0] == pytest.approx(0, abs=1e-6)
+    assert found[1] > 0.1
+    assert mirrored(mirrored(own)) == pytest.approx(own)
+
+
+def other(joint: str) -> str:
+    if joint.startswith("left"):
+        return joint.replace("left", "right")
+    return joint.replace("right", "left")

@@ -10,12 +10,28 @@ from scipy.optimize import linear_sum_assignment
 
 from mocapress.codecs.qssd.decomposition import LogSums, Products, Space, learn
 from mocapress.codecs.qssd.quaternions import Array, conjugate, exponential, logarithm, product
+from mocapress.search.joint_names import JOINTS
 
 ATOMS = 5
 """K."""
 MOST = 2
 """L, atoms of a frame."""
 _ITERATIONS = 3
+ABOVE = [
+    JOINTS.index(above)
+    for above in (
+        *("hips", "chest", "neck"),
+        *("neck", "left_shoulder", "left_elbow", "hips", "left_hip", "left_knee"),
+        *("neck", "right_shoulder", "right_elbow", "hips", "right_hip", "right_knee"),
+    )
+]
+"""What each standard joint but the first hangs on."""
+_SIDES = {"left": "right", "right": "left"}
+_OTHER_SIDE = [
+    JOINTS.index("_".join(_SIDES.get(part, part) for part in joint.split("_"))) - 1
+    for joint in JOINTS[1:]
+]
+"""Of each bone the one on the other side of the body."""
 _STILL = 1e-9
 """Radians of half angles, all joints together, that are no motion."""
 
@@ -35,8 +51,8 @@ def dictionary_of(
     Parameters
     ----------
     turns
-        (F, J, 4): rotations of joints relative to their parents, unit quaternions; 15 frames a
-        second are enough.
+        (F, J, 4): of bones, or rotations of joints relative to their parents; unit quaternions. 15
+        frames a second are enough.
     sums
         K-SVD on logarithms instead of QSSD.
     atoms, most
@@ -66,6 +82,34 @@ def dictionary_of(
         space, displaced, atoms, most, iterations=iterations, seed=seed or 0, start=start
     )
     return learned.dictionary
+
+
+def bone_turns(places: Array) -> Array:
+    """Give the turns of bones from their mean directions, each the shortest.
+
+    The paper decomposes rotations of joints relative to their parents. These depend on how a
+    skeleton lays its joints' axes, so that clips of different skeletons cannot be compared by them.
+
+    Parameters
+    ----------
+    places
+        (F, 16, 3): the standard joints from the hips, in axes that turn with the body.
+
+    Returns
+    -------
+    array
+        (F, 15, 4): of the bone to each joint but the hips; no turn for a bone without length.
+
+    """
+    bones = places[:, 1:] - places[:, ABOVE]
+    directions = _unit(bones)
+    means = np.broadcast_to(_unit(directions.mean(axis=0)), directions.shape)
+    real = 1 + (means * directions).sum(axis=-1, keepdims=True)
+    turns = np.concatenate([real, np.cross(means, directions)], axis=-1)
+    # To the opposite direction any axis across is right.
+    turned = np.linalg.norm(turns, axis=-1, keepdims=True) > _STILL
+    across = np.cross(means, np.eye(3)[np.abs(means).argmin(axis=-1)])
+    return _unit(np.where(turned, turns, np.pad(across, [(0, 0), (0, 0), (1, 0)])))
 
 
 def displacements(turns: Array, *, first: bool = False) -> Array:
@@ -108,6 +152,12 @@ def distances(dictionary: Array, others: Array, *, dots: bool = False) -> Array:
     return np.array([cost[linear_sum_assignment(cost)].sum() for cost in costs])
 
 
+def mirrored(dictionary: Array) -> Array:
+    """Give the dictionaries of bones, (..., K, 15, 3), of clips with left and right exchanged."""
+    flipped: Array = dictionary[..., _OTHER_SIDE, :] * np.array([1.0, -1.0, -1.0])
+    return flipped
+
+
 def _different(turns: Array, count: int) -> Array:
     """Choose frames as atoms, each the farthest from what those before it span."""
     logs = logarithm(turns).reshape(len(turns), -1)
@@ -122,3 +172,10 @@ def _different(turns: Array, count: int) -> Array:
         along = left[farthest] / lengths[farthest]
         left -= (left @ along)[:, None] * along
     return chosen.reshape(count, *turns.shape[1:-1], 3)
+
+
+def _unit(vectors: Array) -> Array:
+    """Give vectors length 1; those without length stay as they are."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    unit: Array = vectors / np.where(length > _STILL, length, 1.0)
+    return unit

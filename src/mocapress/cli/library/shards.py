@@ -167,6 +167,7 @@ def _run(
             failure_code=failure_code,
             debug=debug,
             whole=sum(job.share for job in of_job),
+            close=where.stop,
         )
     if any(job.result.get("failed") for job in of_job):
         raise typer.Exit(failure_code)

@@ -24,8 +24,22 @@ def writable(file: Path) -> sqlite3.Connection:
     return connection
 
 
-def fill(file: Path, found: Manifest) -> tuple[dict[tuple[str, int], int], dict[str, int]]:
-    """Make a library of what a manifest says; give the row of each clip, and ids of models."""
+def fill(file: Path, found: Manifest, of: str) -> tuple[dict[tuple[str, int], int], dict[str, int]]:
+    """Make a library of what a manifest says; give the row of each clip, and ids of models.
+
+    Raises
+    ------
+    CorruptError
+        When the manifest says what cannot be.
+
+    """
+    try:
+        return _fill(file, found)
+    except (ValueError, TypeError, KeyError, OverflowError, sqlite3.Error) as error:
+        raise CorruptError(f"the manifest is damaged ({error!r})", file=of) from error
+
+
+def _fill(file: Path, found: Manifest) -> tuple[dict[tuple[str, int], int], dict[str, int]]:
     rows: dict[tuple[str, int], int] = {}
     models: dict[str, int] = {}
     skeletons: dict[bytes, int] = {}
@@ -71,26 +85,19 @@ def _insert_clip(
     skeletons: dict[bytes, int],
 ) -> None:
     """Insert all of a clip but its text and its chunks."""
-    record, skeleton = row["skeleton_record"], None
-    if record is not None:
-        skeleton = skeletons.setdefault(record, len(skeletons) + 1)
-        connection.execute(
-            "INSERT OR IGNORE INTO skeletons VALUES(?, ?, ?, ?, ?)",
-            (
-                skeleton,
-                row["skeleton"],
-                row["joints"],
-                hash_of(unpack(record, "skeleton", UNPACKED)),
-                record,
-            ),
-        )
+    record = row["skeleton_record"]
+    if record is not None and record not in skeletons:
+        skeletons[record] = len(skeletons) + 1
+        wanted = hash_of(unpack(record, "skeleton", UNPACKED))
+        facts = (skeletons[record], row["skeleton"], row["joints"], wanted, record)
+        connection.execute("INSERT INTO skeletons VALUES(?, ?, ?, ?, ?)", facts)
     own = {column: row[column] for column in Facts._fields if column not in ("skeleton", "text")}
     text = None if row["text_size"] is None else number
-    facts = Facts(**own, skeleton=skeleton, text=text)
-    marks = ", ".join("?" * (len(facts) + 2))
+    clip = Facts(**own, skeleton=skeletons.get(record), text=text)
+    marks = ", ".join("?" * (len(clip) + 2))
     connection.execute(
         f"INSERT INTO clips(id, {COLUMNS}, checksum) VALUES({marks})",
-        (number, *facts, checksum(facts)),
+        (number, *clip, checksum(clip)),
     )
     for label in row["labels"] or ():
         connection.execute("INSERT INTO labels VALUES(?, ?)", (number, label))
@@ -116,11 +123,13 @@ def insert_values(
     value: bytes,
     text: bytes | None,
 ) -> None:
-    """Insert what was read of a clip, companion or model."""
+    """Insert what was read of a clip, companion or model; a forked process may have done it."""
     kind, number = key
     if text is not None:
         own = -number if kind == COMPANION else number
-        connection.execute("INSERT INTO texts VALUES(?, ?, ?)", (own, hash_of(text), text))
+        connection.execute(
+            "INSERT OR IGNORE INTO texts VALUES(?, ?, ?)", (own, hash_of(text), text)
+        )
     if kind == MODEL:
         connection.execute(
             "INSERT OR IGNORE INTO models VALUES(?, ?, ?, ?)",
@@ -131,5 +140,6 @@ def insert_values(
         if value[:begin] != row["chunk_list"]:
             raise CorruptError("not what the manifest says is in the shard", file=row["name"])
         connection.execute(
-            "INSERT INTO chunks VALUES(?, ?, ?)", (number, row["chunk_list"], value[begin:])
+            "INSERT OR IGNORE INTO chunks VALUES(?, ?, ?)",
+            (number, row["chunk_list"], value[begin:]),
         )

@@ -1,6 +1,8 @@
 """A sharded library, open: adding, removing and coding anew, a shard at a time."""
 
 import dataclasses
+import errno
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
@@ -267,6 +269,8 @@ def _listed(source: str) -> tuple[Store, list[Listed]]:
     """Give the folder of a source and the motion files in it; of one file, only this one."""
     endings = suffixes(of for of in formats() if of.split or of.read_skeleton)
     store = Store(source)
+    if store.local is not None and not store.local.exists():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), source)
     found = store.files()
     if not found:
         folder, _, name = source.rstrip("/").rpartition("/")
@@ -279,7 +283,8 @@ def _listed(source: str) -> tuple[Store, list[Listed]]:
         and not any(part.startswith(".") for part in file.name.split("/"))
     ]
     if not files:
-        raise ParameterError("no motion files", file=source)
+        what = "motion files, or folders of them; archives are to be unpacked before"
+        raise ParameterError("nothing to add", file=source, expected=what)
     return store, files
 
 

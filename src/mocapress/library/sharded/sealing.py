@@ -7,6 +7,7 @@ the chunks of a clip stand in successive pages.
 import hashlib
 import sqlite3
 from contextlib import closing
+from mmap import mmap
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +17,13 @@ from mocapress.library.database import Database
 from mocapress.library.opened import OpenedClip
 from mocapress.library.rows import Facts, read_clip
 from mocapress.library.sharded.manifest import CLIP, COMPANION, MODEL
-from mocapress.library.sharded.places import Place, joined, last_values
+from mocapress.library.sharded.places import Place, joined, last_values, mapped
 
-_FIRST = (
-    *("skeletons", "companions", "clips", "belongs", "labels", "notes"),
-    *("runs", "needs", "anchors"),
-)
-"""Tables of small rows, which stand before the values that are read alone."""
+_OTHERS = """
+SELECT name FROM made.sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%'
+    AND name NOT IN ('migrations', 'texts', 'chunks') ORDER BY name
+"""
+"""Tables that stand before the values that are read alone."""
 _SMALL = 900
 """Bytes up to which a text is in the manifest, too, and is not read from the shard."""
 
@@ -38,9 +39,8 @@ def seal(source: Database, target: Path) -> str:
         connection.execute("BEGIN")
         # When it was made says nothing of what is in it.
         connection.execute("UPDATE main.migrations SET applied = ''")
-        for table in _FIRST:
-            _copy(connection, table)
-        _copy(connection, "models")
+        for (table,) in connection.execute(_OTHERS).fetchall():
+            _copy(connection, table.decode())
         texts = connection.execute("SELECT DISTINCT text FROM made.companions ORDER BY 1")
         for (text,) in texts.fetchall():
             _copy(connection, "texts", "id", text)
@@ -177,7 +177,7 @@ def _clip(db: Database, clip: int) -> dict[str, Any]:
 
 def _check(db: Database, rows: list[dict[str, Any]]) -> None:
     """See that what stands at the places is what the tables say."""
-    data = db.path.read_bytes()
+    data = mapped(db.path)
     queries = {
         CLIP: "SELECT list, sections FROM chunks WHERE clip = ?",
         MODEL: "SELECT file FROM models WHERE id = ?",
@@ -190,7 +190,7 @@ def _check(db: Database, rows: list[dict[str, Any]]) -> None:
                 raise VerificationError(f"{row['name']} is not where it should be in the shard")
 
 
-def value_of(data: bytes, flat: list[int], size: int) -> bytes:
+def value_of(data: bytes | mmap, flat: list[int], size: int) -> bytes:
     """Give the value that stands at places of a file."""
     places = unflattened(flat)
     parts = [data[place.begin : place.begin + place.size] for place in places]

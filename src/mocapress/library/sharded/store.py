@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
-from functools import cached_property
+from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,8 +18,6 @@ _FOREIGN = {"botocore", "aiobotocore", "aiohttp", "s3fs", "gcsfs", "google", "ad
 """Packages whose errors are those of a storage that cannot be reached or refuses."""
 _GAP = 0.07
 """Of the bytes that are wanted, how many others may be read to ask less often."""
-_MOST = 3
-"""Requests for parts of a file."""
 
 
 class Listed(NamedTuple):
@@ -38,26 +36,10 @@ class Store:
 
     url: str
 
-    @cached_property
+    @property
     def _opened(self) -> tuple[Any, str]:
-        try:
-            import fsspec
-        except ImportError:
-            raise UnsupportedError(
-                "sharded libraries need fsspec", expected="pip install 'mocapress[cluster]'"
-            ) from None
-        try:
-            fs, root = fsspec.core.url_to_fs(self.url, use_listings_cache=False)
-        except ImportError as error:
-            raise UnsupportedError(
-                f"what opens {self.url} is not installed", found=str(error).split("\n")[0]
-            ) from None
-        except ValueError as error:
-            raise UnsupportedError(str(error), file=self.url) from None
-        return fs, root.rstrip("/")
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {"url": self.url}
+        """The file system of fsspec, and the folder there; a forked process has its own."""
+        return _opened(self.url, os.getpid())
 
     @property
     def local(self) -> Path | None:
@@ -78,9 +60,9 @@ class Store:
         with self._naming(name):
             return bytes(self._opened[0].cat_file(self._path(name)))
 
-    def parts(self, name: str, places: Sequence[tuple[int, int]]) -> list[bytes]:
-        """Give parts of a file, each [begin, end); near ones are asked for at once."""
-        spans = _spans(sorted(places))
+    def parts(self, name: str, places: Sequence[tuple[int, int]], most: int) -> list[bytes]:
+        """Give parts of a file, each [begin, end), by so many requests at most."""
+        spans = _spans(sorted(places), most)
         with self._naming(name):
             found = self._opened[0].cat_ranges(
                 [self._path(name)] * len(spans),
@@ -187,8 +169,8 @@ class Store:
             raise OSError(errno.EIO, str(error) or type(error).__name__, file) from error
 
 
-def _spans(places: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Join parts that are near each other, until there are few and little is read in vain."""
+def _spans(places: Sequence[tuple[int, int]], most: int) -> list[tuple[int, int]]:
+    """Join parts that are near each other: as many as cost little, or as there must be."""
     spans: list[tuple[int, int]] = []
     for begin, end in places:
         if spans and begin <= spans[-1][1]:
@@ -199,9 +181,28 @@ def _spans(places: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
     while len(spans) > 1:
         gaps = [after[0] - before[1] for before, after in pairwise(spans)]
         least = min(gaps)
-        if least > left and len(spans) <= _MOST:
+        if least > left and len(spans) <= most:
             break
         at = gaps.index(least)
         spans[at : at + 2] = [(spans[at][0], spans[at + 1][1])]
         left -= least
     return spans
+
+
+@lru_cache(maxsize=16)
+def _opened(url: str, process: int) -> tuple[Any, str]:  # noqa: ARG001
+    try:
+        import fsspec
+    except ImportError:
+        raise UnsupportedError(
+            "sharded libraries need fsspec", expected="pip install 'mocapress[cluster]'"
+        ) from None
+    try:
+        fs, root = fsspec.core.url_to_fs(url, use_listings_cache=False, skip_instance_cache=True)
+    except ImportError as error:
+        raise UnsupportedError(
+            f"what opens {url} is not installed", found=str(error).split("\n")[0]
+        ) from None
+    except ValueError as error:
+        raise UnsupportedError(str(error), file=url) from None
+    return fs, root.rstrip("/")
