@@ -102,7 +102,7 @@ compilers:
 
 # The core for the page, in modules of which it carries those that it needs; viewer/wasm/ keeps what
 # this builds.
-decoders := app diffma exact mrpa near qssd
+decoders := app diffma exact mrpa near patterns qssd
 wasm_modules := $(patsubst %,build/wasm/%.wasm,$(decoders) formats kinematics)
 ZIG := $(BIN)/python -m ziglang c++ -target wasm32-wasi -std=c++20 -ffp-contract=off -fno-math-errno -fno-exceptions \
     -fno-rtti -msimd128 -flto -Wall -Wextra -Icore -Wl,--strip-all

@@ -92,5 +92,5 @@ def draw(named: dict[str, tuple[list[str], NDArray[np.float64]]], path: Path) ->
         axes.set_title(f"{name}, %")
         axes.set_xlabel("found")
         axes.set_ylabel("asked for")
-    figure.savefig(path, dpi=90)
+    figure.savefig(path, dpi=70, bbox_inches="tight")
     plt.close(figure)

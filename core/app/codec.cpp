@@ -234,6 +234,7 @@ void decode(ByteView payload, double* values, std::size_t frames, std::span<cons
   Columns matrix(frames, columns);
   code_columns(side, matrix, frames, columns, parameters, choices);
   if (!side.exhausted()) fail("bytes are left over after the values");
+  if (frames == 0) return;  // what has no rows may have no address either
   for (std::size_t c = 0; c < columns.size(); ++c) {
     restore_column(matrix[c], values + c, frames, columns.size(), columns[c]);
   }

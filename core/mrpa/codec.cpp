@@ -140,16 +140,17 @@ class Gathered {
   Gathered(std::size_t frames, std::size_t stride)
       : values_(frames), parents_(frames), stride_(stride) {}
 
-  void take_values(const double* from, app::Precision precision) {
+  // Matrices without rows may have no address, from which nothing is counted.
+  void take_values(const double* from, std::size_t column, app::Precision precision) {
     app::with_type(precision, [&](auto zero) {
       for (std::size_t j = 0; j < values_.size(); ++j) {
-        values_[j] = static_cast<decltype(zero)>(from[j * stride_]);
+        values_[j] = static_cast<decltype(zero)>(from[j * stride_ + column]);
       }
     });
   }
-  void take_parents(const double* from) {
+  void take_parents(const double* from, std::size_t column) {
     for (std::size_t j = 0; j < parents_.size(); ++j) {
-      const double value = from[j * stride_];
+      const double value = from[j * stride_ + column];
       parents_[j] = std::isfinite(value) ? value : 0;
     }
   }
@@ -204,8 +205,8 @@ Bytes encode(const Rows& rows, int mantissa_limit, Choice choice) {
   Contexts contexts(mantissa_limit);
   RangeWriting side;
   for (std::size_t c = 0; c < rows.columns.size(); ++c) {
-    column.take_values(rows.values + c, rows.columns[c].precision);
-    column.take_parents(rows.parents + c);
+    column.take_values(rows.values, c, rows.columns[c].precision);
+    column.take_parents(rows.parents, c);
     app::with_type(rows.columns[c].precision, [&](auto zero) {
       using Float = decltype(zero);
       code_column<Float>(side, contexts, column.values(), column.parents(), rows.pieces,
@@ -222,11 +223,12 @@ void decode(ByteView payload, double* values, const double* parents, std::span<c
   Contexts contexts(mantissa_limit);
   RangeReading side(payload);
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (parents != nullptr) column.take_parents(parents + c);
+    if (parents != nullptr) column.take_parents(parents, c);
     app::with_type(columns[c].precision, [&](auto zero) {
       code_column<decltype(zero)>(side, contexts, column.values(), column.parents(), pieces,
                                   [](const Run&) { return Weights{}; });
     });
+    if (frames == 0) continue;
     app::restore_column(column.values(), values + c, frames, columns.size(), columns[c]);
   }
   if (!contexts.corrections.sound()) fail("a correction leaves its range");
@@ -238,8 +240,8 @@ std::vector<double> estimated_bits(const Rows& rows) {
   Gathered column(frames, rows.columns.size());
   std::vector<double> bits(2 * rows.pieces.size());
   for (std::size_t c = 0; c < rows.columns.size(); ++c) {
-    column.take_values(rows.values + c, rows.columns[c].precision);
-    column.take_parents(rows.parents + c);
+    column.take_values(rows.values, c, rows.columns[c].precision);
+    column.take_parents(rows.parents, c);
     app::with_type(rows.columns[c].precision, [&](auto zero) {
       using Float = decltype(zero);
       std::size_t i = 0;

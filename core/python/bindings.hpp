@@ -66,7 +66,9 @@ void bind_exact(nb::module_& module);
 void bind_diffma(nb::module_& module);
 void bind_mrpa(nb::module_& module);
 void bind_near(nb::module_& module);
+void bind_patterns(nb::module_& module);
 void bind_qssd(nb::module_& module);
 void bind_qssd_learning(nb::module_& module);
+void bind_search(nb::module_& module);
 
 }  // namespace mocapress

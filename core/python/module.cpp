@@ -14,6 +14,8 @@ NB_MODULE(_core, module) {
   mocapress::bind_diffma(module);
   mocapress::bind_mrpa(module);
   mocapress::bind_near(module);
+  mocapress::bind_patterns(module);
   mocapress::bind_qssd(module);
   mocapress::bind_qssd_learning(module);
+  mocapress::bind_search(module);
 }

@@ -23,8 +23,8 @@ from container import Stream, packed, read_file, read_model
 from layout import Layout
 from records import CorruptError
 
-CODECS = ("app", "diffma", "exact", "mrpa", "near", "qssd")
-LOSSY = ("diffma", "near", "qssd")
+CODECS = ("app", "diffma", "exact", "mrpa", "near", "patterns", "qssd")
+LOSSY = ("diffma", "near", "patterns", "qssd")
 # What a broken file may lead to.
 BROKEN = (
     *(CorruptError, ValueError, LookupError, ArithmeticError),

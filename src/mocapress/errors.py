@@ -78,6 +78,18 @@ class UnsupportedError(MocapressError):
     """The input is valid, but asks for something that this version cannot do."""
 
 
+class LimitError(UnsupportedError):
+    """More would be restored than the user allows."""
+
+    def __init__(self, limit: int, found: int, file: str | None = None) -> None:
+        super().__init__(
+            "more would be restored than the limit allows (--limit, limit=)",
+            file=file,
+            expected=f"at most {limit} bytes",
+            found=str(found),
+        )
+
+
 class ParameterError(MocapressError):
     """A parameter of a codec or command has a value it cannot have."""
 

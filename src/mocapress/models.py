@@ -10,7 +10,13 @@ from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.codecs.fallback import naming_faults
 from mocapress.container import Mcm, pack_model, parse_model, peek_model
 from mocapress.container.mcm import LONGEST_FILE, LONGEST_HEADER
-from mocapress.errors import CorruptError, MissingModelError, MocapressError, ParameterError
+from mocapress.errors import (
+    CorruptError,
+    LimitError,
+    MissingModelError,
+    MocapressError,
+    ParameterError,
+)
 from mocapress.motion import Clip
 from mocapress.source import Named, Source, read
 from mocapress.storage import write_whole
@@ -71,19 +77,30 @@ def save_model(model: Model, path: str | Path, *, force: bool = False) -> None:
     write_whole(path, model_bytes(model), force=force)
 
 
-def load_model(source: str | Path | bytes) -> Model:
+def load_model(source: str | Path | bytes, *, limit: int | None = None) -> Model:
     """Read a model from a ``.mcm`` file, or its bytes.
+
+    Parameters
+    ----------
+    source
+        The file.
+    limit
+        Bytes that the model may have, unpacked; None for as many as any model may: 8 MiB.
 
     Raises
     ------
     CorruptError
         When it is not such a file, or a damaged one.
+    LimitError
+        When it is larger than ``limit`` allows.
 
     """
     try:
         header, payload = parse_model(
             source if isinstance(source, bytes) else _front(Path(source), LONGEST_FILE)
         )
+        if limit is not None and len(payload) > limit:
+            raise LimitError(limit, len(payload))
         model = Model(header.codec, payload)
         if model.digest != header.digest:
             raise CorruptError(

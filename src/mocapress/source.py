@@ -24,10 +24,10 @@ from mocapress import formats
 from mocapress.errors import (
     CorruptError,
     FormatError,
+    LimitError,
     MocapressError,
     MotionWarning,
     ParameterError,
-    UnsupportedError,
 )
 from mocapress.formats import Format, Split
 from mocapress.formats.problems import Problem
@@ -166,12 +166,7 @@ class Source:
 
         """
         if self.limit is not None and size > self.limit:
-            raise UnsupportedError(
-                "more would be restored than the limit allows (--limit, limit=)",
-                file=self.name or None,
-                expected=f"at most {self.limit} bytes",
-                found=str(size),
-            )
+            raise LimitError(self.limit, size, self.name or None)
 
     def printed(self, print_file: Callable[[int], bytes], most: int) -> bytes:
         """Print a file of at most so many bytes, and of no more than may be restored.

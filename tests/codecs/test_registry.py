@@ -66,6 +66,7 @@ def test_it_keeps_the_contract(other_package: str) -> None:
         "diffma",
         "mrpa",
         "near",
+        "patterns",
         "qssd",
         "broken",
         "deflated",
@@ -114,7 +115,8 @@ def test_one_that_cannot_be_used_says_why(other_package: str) -> None:
     with pytest.raises(UnsupportedError, match=r"is not a mocapress\.codecs\.Codec"):
         codecs.codec("stranger")
     with pytest.raises(
-        ParameterError, match="unknown codec; expected exact, app, diffma, mrpa, near, qssd, bro"
+        ParameterError,
+        match="unknown codec; expected exact, app, diffma, mrpa, near, patterns, qssd, bro",
     ):
         codecs.codec("nothing")
 

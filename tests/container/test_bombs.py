@@ -1,6 +1,7 @@
 """What a file asks for: memory is bounded by what comes out of it, whatever it announces."""
 
 import json
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +11,7 @@ from bombs import BOMBS
 from running import mocapress
 
 import mocapress as mp
+from mocapress.models import model_bytes
 
 _ALLOWED = 2**28
 _CHILD = """
@@ -86,6 +88,37 @@ def test_a_limit_bounds_what_is_restored(tmp_path: Path) -> None:
     assert mocapress("verify", path, "--limit", "7K").exit_code != 0
     assert mocapress("decompress", path, "--limit", "8k").exit_code == 0
     assert mocapress("decompress", path, "--limit", "much").exit_code == 2
+
+
+def test_a_limit_bounds_what_is_restored_of_a_clip_of_a_library(tmp_path: Path) -> None:
+    text = b"1,2\n3,4\n" * 1000
+    path = tmp_path / "a.mocapdb"
+    with mp.open_library(path, "a") as library:
+        library.add(text, "a.csv")
+    with mp.open_library(path, limit=len(text) - 1) as library:
+        for work in (library.read_bytes, lambda name: library.verify([name])):
+            with pytest.raises(mp.UnsupportedError, match="limit"):
+                work("a.csv")
+        (again,) = pickle.loads(pickle.dumps(library)).clips()
+        with pytest.raises(mp.UnsupportedError, match="limit"):
+            again.library.read_bytes("a.csv")
+    for command in ("cat", "extract", "verify", "export"):
+        more = ["-o", tmp_path / command] if command[0] == "e" else ["a.csv"] * (command == "cat")
+        if command != "export":  # chunks and texts are handed on as they are
+            refused = mocapress("library", command, path, *more, "--limit", "7K")
+            assert refused.exit_code != 0
+            assert "at most 7168 bytes" in refused.stderr
+            assert not (tmp_path / command).exists()
+        assert mocapress("library", command, path, *more, "--limit", "8K").exit_code == 0
+
+
+@pytest.mark.usefixtures("learner")
+def test_a_limit_bounds_a_model() -> None:
+    model = mp.Model("learner", bytes(100))
+    stored = model_bytes(model)
+    assert mp.load_model(stored, limit=100) == mp.load_model(stored) == model
+    with pytest.raises(mp.UnsupportedError, match="limit"):
+        mp.load_model(stored, limit=99)
 
 
 def test_a_limit_bounds_the_numbers_of_a_json() -> None:

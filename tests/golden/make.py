@@ -134,6 +134,17 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_sparse.amc": (WALK_LF, "qssd:chunk=100", {}),
     "v1_sparse.bvh": (WALK_BVH, "qssd:omit=1,levels=4,max_error=0.25,chunk=90", {}),
     "v1_sparse_disorder.amc": (clips.disorder(), "qssd:omit=0,levels=2,chunk=10", {}),
+    "v1_patterns.amc": (WALK_LF, "patterns:chunk=100,theta=1.0,size=20.0,mode=published", {}),
+    "v1_patterns.trc": (
+        table_files.trc(np.hstack([table_files.markers(), table_files.markers()[:, :9]])),
+        "patterns:chunk=140,size=800.0,protect=M0+M3,weights=M2:4,smooth=3",
+        {},
+    ),
+    "v1_patterns_disorder.amc": (
+        clips.disorder(),
+        "patterns:chunk=10,max_error=0.25,smooth=0",
+        {},
+    ),
     "v1_leaps.amc": (clips.leaps(), "exact:level=7,chunk=22", {}),
     "v1_skeleton.amc": (clips.skeleton(), "exact:level=8,chunk=12", {}),
     "v1_signed.bvh": (clips.layouts("signed"), "exact:level=1,chunk=12", {}),
@@ -159,6 +170,7 @@ TRAINED = {
     "v1_trained_disorder.amc": (clips.disorder(), "exact:chunk=10"),
     "v1_trained_numbers.bvh": (clips.numbers(), "exact:chunk=16"),
     "v1_trained_sparse.bvh": (clips.couplings(), "qssd:atoms=9,omit=0,chunk=30,max_error=5.0"),
+    "v1_trained_patterns.amc": (WALK_LF, "patterns:max_error=0.05,cluster=0.1,size=20.0"),
     "v1_trained_skeleton.amc": (clips.skeleton(), "exact:level=9,chunk=12"),
 }
 # Beside NAME the document NAME.diffma.json; what comes back of it is NAME.

@@ -38,6 +38,8 @@ CASES = [
     ("numbers.bvh", "diffma:order=2,chunk=16,window=3"),
     ("couplings.bvh", "near:quality=8,chunk=200"),
     ("numbers.bvh", "near:chunk=16"),
+    ("couplings.bvh", "patterns:chunk=30,max_error=0.5"),
+    ("numbers.bvh", "patterns:chunk=16,mode=published with a model"),
     ("couplings.bvh", "qssd:step=0.1,chunk=40"),
     ("numbers.bvh", "qssd:omit=0,max_error=0.01,chunk=16"),
     ("couplings.bvh", "qssd:atoms=6,iterations=2,chunk=64 with a model"),

@@ -41,6 +41,9 @@ const CODECS = {
   near(own) {
     return { told: [], most: whole(own, "chunk", 1024, MOST_CHUNK) };
   },
+  patterns(own) {
+    return { told: [], most: whole(own, "chunk", 2048, MOST_CHUNK) };
+  },
   qssd(own) {
     return { told: [], most: whole(own, "chunk", 2048, MOST_CHUNK) };
   },

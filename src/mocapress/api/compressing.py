@@ -85,7 +85,8 @@ def compress(
     if model is not None and not isinstance(model, Model):
         model = load_model(model)
     if isinstance(source, Clip):
-        return compress_clip(source, codec, model=model, notes=notes).blob
+        made = checked_codec(codec, model)
+        return compress_clip(made.prepared(source), made, model=model, notes=notes).blob
     opened = Source(source)
     long = None if model is not None else compress_long(opened, codec, notes)
     if long is not None:
@@ -107,6 +108,12 @@ def compress_source(
     """Compress a file; see ``compress``."""
     made = checked_codec(codec, model)
     parts, warning = taken_apart(source, asf_path)
+    if parts is not None and (prepared := made.prepared(parts.clip)) is not parts.clip:
+        found = compress_clip(prepared, made, model=model, notes=notes)
+        what = f"{source.format.id if source.format else 'the file'} does not come back"
+        return replace(
+            found, warning=f"{made.id} keeps joints as markers: {what}; convert writes them"
+        )
     embed = embed_asf and source.used is not None
     if embed:
         source.warn_of_guess()
@@ -169,16 +176,17 @@ def compress_parts(
 
             def work(way: Codec) -> Compressed:
                 own = model if way is codec else None
+                clip = with_names(source, parts) if way.can.names else parts.clip
                 made = motion_file(
                     parts,
                     source,
-                    coded_streams(parts.clip, way, own),
+                    coded_streams(clip, way, own),
                     own,
                     with_skeleton=with_skeleton,
                     companions=companions,
                     notes=notes,
                 )
-                return _checked(made, data, way, parts.clip, own)
+                return _checked(made, data, way, clip, own)
 
             found, failure = first_that_works(codec, work)
             warning = "; ".join(filter(None, (failure, warning))) or None
@@ -186,6 +194,24 @@ def compress_parts(
     if found is None or kept is not found.blob:
         found = Compressed(kept, None)
     return replace(found, warning=warning)
+
+
+def with_names(source: Source, parts: Split) -> Clip:
+    """Give a file's clip with the names of its markers, where its layout knows them.
+
+    The numbers are those that the file stores. Columns before those of markers keep their names.
+    """
+    clip = parts.clip
+    if source.format is None:
+        return clip
+    try:
+        told = source.described(source.format, parts.stored, clip).main
+    except FormatError:
+        return clip
+    more = clip.channels - told.channels
+    if more < 0 or told.frames != clip.frames:
+        return clip
+    return clip.with_columns((*clip.columns[:more], *told.columns))
 
 
 def smallest(

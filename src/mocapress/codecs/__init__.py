@@ -68,6 +68,7 @@ _REGISTRY: dict[str, tuple[str, str]] = {
     "diffma": ("mocapress.codecs.diffma", "DiffMA"),
     "mrpa": ("mocapress.codecs.mrpa", "Mrpa"),
     "near": ("mocapress.codecs.near", "Near"),
+    "patterns": ("mocapress.codecs.patterns", "Patterns"),
     "qssd": ("mocapress.codecs.qssd", "QSSD"),
 }
 

@@ -58,6 +58,8 @@ class Capabilities:
     """Kinds of streams that it takes."""
     document: bool = False
     """Whether it can write a clip as DiffMA JSON."""
+    names: bool = False
+    """Whether it looks at the names of markers."""
     measured: bool = False
     """Whether there is more to say of what it coded than sizes."""
 
@@ -210,6 +212,13 @@ class Codec(ABC):
             else, and never with more memory than a small multiple of (frames x columns x 8) bytes.
 
         """
+
+    def prepared(self, clip: Clip) -> Clip:
+        """Give the clip that stands for a clip of a file; of most codecs, that clip itself.
+
+        Where it is another one, the file is not restored: what comes back is the other clip.
+        """
+        return clip
 
     def encode_together(
         self, streams: Sequence[Stream], *, skeleton: Skeleton | None = None

@@ -11,9 +11,15 @@ from numpy.typing import NDArray
 
 from mocapress.errors import UnsupportedError
 from mocapress.formats.table_writing import with_frames
-from mocapress.motion import Clip, Column, Stream
-from mocapress.motion.kinematics import positions
-from mocapress.motion.markers import ANALOG, CAMERAS, POINTS, RESIDUALS, WHOLE_WORD
+from mocapress.motion import Clip, Stream
+from mocapress.motion.markers import (
+    ANALOG,
+    CAMERAS,
+    POINTS,
+    RESIDUALS,
+    WHOLE_WORD,
+    joints_as_points,
+)
 
 T = TypeVar("T")
 _OF_PLATES = (
@@ -44,14 +50,7 @@ def fit(clip: Clip) -> Clip:
     """
     streams = clip.streams
     if POINTS not in streams and clip.skeleton is not None and clip.frames:
-        joints = clip.skeleton.joints
-        places = positions(clip)
-        columns = tuple(
-            Column(f"{joint.name}.{kind}", i, kind, "")
-            for i, joint in enumerate(joints)
-            for kind in "xyz"
-        )
-        stream = Stream(places.reshape(len(places), -1), columns, clip.frame_time)
+        stream = joints_as_points(clip)
         return with_frames(replace(clip, streams={POINTS: stream}, skeleton=None))
     kept = {name: streams[name] for name in (POINTS, RESIDUALS, CAMERAS, ANALOG) if name in streams}
     if POINTS not in kept and ANALOG not in kept:

@@ -23,6 +23,7 @@ from mocapress.motion.number_format import NumberFormat
 MOST_TEMPLATES = 64
 _PIECE = 2**16
 """Numbers that are printed together."""
+_MOST_COUNTER = 2**59
 # Of how many rows the texts are looked at to find formats.
 _SAMPLE = 48
 # A template that leaves fewer numbers than one in so many written otherwise is good enough.
@@ -192,7 +193,10 @@ def build(
         return places
 
     frames = len(body.values)
-    pending = np.setdiff1d(np.arange(frames), body.unread)
+    # Steps between frame numbers have a limit in files; a row of a number beyond it stays a text.
+    absurd = (body.counters > _MOST_COUNTER) | (body.counters < -_MOST_COUNTER)
+    counters = np.where(absurd, 0, body.counters)
+    pending = np.setdiff1d(np.arange(frames), [*body.unread, *np.flatnonzero(absurd)])
     some = np.linspace(0, len(pending) - 1, min(len(pending), _SAMPLE)).astype(np.int64)
     sample = pending[np.unique(some)]
     places = (places_of_rows or places_by_slots)(sample)
@@ -209,7 +213,7 @@ def build(
             matched, rows, at, found = _core.match_rows(
                 data,
                 body.offsets,
-                body.counters,
+                counters,
                 body.values,
                 pending,
                 template.as_tuple(),
@@ -235,7 +239,7 @@ def build(
         formats,
         tuple(templates),
         assigned,
-        body.counters,
+        counters,
         np.array([cell[0] for cell in cells], np.uint64),
         np.array([cell[1] for cell in cells], np.uint32),
         tuple(cell[2] for cell in cells),

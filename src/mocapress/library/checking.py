@@ -9,7 +9,7 @@ from typing import NamedTuple
 from mocapress.api.checking import verify_opened
 from mocapress.container import unpack
 from mocapress.container.limits import most_companions
-from mocapress.errors import CorruptError, MissingModelError, MocapressError
+from mocapress.errors import CorruptError, LimitError, MissingModelError, MocapressError
 from mocapress.library.database import Database
 from mocapress.library.index import damaged as damaged_index
 from mocapress.library.opened import OpenedClip
@@ -116,7 +116,7 @@ def check(db: Database) -> Iterator[list[Fault]]:
 def _collecting(faults: list[Fault], name: str) -> Iterator[None]:
     try:
         yield
-    except MissingModelError:
+    except (MissingModelError, LimitError):  # nothing is wrong with the clip
         raise
     except MocapressError as error:
         faults.append(Fault(name, error.what))

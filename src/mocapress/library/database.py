@@ -21,6 +21,7 @@ from mocapress.errors import (
     UnsupportedError,
 )
 from mocapress.library import schema
+from mocapress.source import LIMIT
 from mocapress.storage import write_whole
 
 WAIT = 10.0
@@ -43,6 +44,8 @@ class Database:
         Whether it will be written.
     wait
         Seconds to wait for another process that writes.
+    limit
+        Bytes that may be restored of a clip; None for any number.
 
     Raises
     ------
@@ -53,12 +56,14 @@ class Database:
 
     """
 
-    def __init__(self, path: Path, *, writable: bool, wait: float) -> None:
+    def __init__(
+        self, path: Path, *, writable: bool, wait: float, limit: int | None = LIMIT
+    ) -> None:
         if sqlite3.sqlite_version_info < _LEAST_SQLITE:
             raise UnsupportedError(
                 "libraries need SQLite", expected="3.37 or later", found=sqlite3.sqlite_version
             )
-        self.path, self.writable, self.wait = path, writable, wait
+        self.path, self.writable, self.wait, self.limit = path, writable, wait, limit
         self.writing_lock = threading.RLock()
         self._pid = os.getpid()
         self._all: list[sqlite3.Connection] = []

@@ -27,11 +27,16 @@ from mocapress.library.removing import recompress, remove_clips
 from mocapress.library.searching import Reindexed, reindex
 from mocapress.models import Place, load_model
 from mocapress.motion import Clip, Skeleton
-from mocapress.source import Named, Source
+from mocapress.source import LIMIT, Named, Source
 
 
 def open_library(
-    path: str | Path, mode: str = READ, *, wait: float = WAIT, models: Sequence[Place] = ()
+    path: str | Path,
+    mode: str = READ,
+    *,
+    wait: float = WAIT,
+    models: Sequence[Place] = (),
+    limit: int | None = LIMIT,
 ) -> "Library":
     """Open a library, one file that holds many clips, or a folder of them, a sharded library.
 
@@ -46,6 +51,9 @@ def open_library(
         Seconds to wait for another process that is writing.
     models
         Where models may be that clips need and the library lacks, as in ``decompress``.
+    limit
+        Bytes that may be restored of a clip, of its file, and of its numbers, 8 each: 4 GiB by
+        default; None for any number.
 
     Returns
     -------
@@ -67,11 +75,11 @@ def open_library(
     if is_sharded(path):
         from mocapress.library.sharded import open_sharded
 
-        return open_sharded(str(path), mode, wait=wait, models=models)
+        return open_sharded(str(path), mode, wait=wait, models=models, limit=limit)
     path = Path(path)
     if mode == APPEND and not path.exists():
         database.create(path)
-    return Library(Database(path, writable=mode == APPEND, wait=wait), models)
+    return Library(Database(path, writable=mode == APPEND, wait=wait, limit=limit), models)
 
 
 def is_sharded(path: str | Path) -> bool:

@@ -79,11 +79,13 @@ class Reading:
             "path": self.path,
             "mode": APPEND if self.db.writable else READ,
             "wait": self.db.wait,
+            "limit": self.db.limit,
             "models": self.models,
         }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        db = Database(state["path"], writable=state["mode"] == APPEND, wait=state["wait"])
+        writable = state["mode"] == APPEND
+        db = Database(state["path"], writable=writable, wait=state["wait"], limit=state["limit"])
         self.__init__(db, state["models"])  # type: ignore[misc]
 
     def __repr__(self) -> str:

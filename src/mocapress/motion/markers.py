@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.errors import UnsupportedError
-from mocapress.motion.clip import Clip, Stream
+from mocapress.motion.clip import Clip, Column, Stream
 from mocapress.motion.frame_time import FrameTime
+from mocapress.motion.kinematics import positions
 
 POINTS, RESIDUALS, CAMERAS, ANALOG, ROTATIONS = (
     "points",
@@ -160,6 +161,32 @@ def _fourth_words(
     scale = float(clip.metadata.get("point_scale", "1"))
     seen = np.where(valid & ~whole, cameras, 0).astype(np.int64)
     return np.where(valid, residuals * scale, np.nan), seen
+
+
+def joints_as_points(clip: Clip, scale: float = 1.0, unit: str = "") -> Stream:
+    """Give the positions of a skeleton's joints as the stream of points of markers.
+
+    Parameters
+    ----------
+    clip
+        With a skeleton.
+    scale, unit
+        What lengths are multiplied by, and what they are then in.
+
+    Raises
+    ------
+    UnsupportedError
+        When the clip has no skeleton, or stretches bones.
+
+    """
+    places = positions(clip) * scale
+    joints = clip.skeleton.joints if clip.skeleton else ()
+    columns = tuple(
+        Column(f"{joint.name}.{kind}", i, kind, unit)
+        for i, joint in enumerate(joints)
+        for kind in "xyz"
+    )
+    return Stream(places.reshape(len(places), len(columns)), columns, clip.frame_time)
 
 
 def events(clip: Clip) -> tuple[Event, ...]:

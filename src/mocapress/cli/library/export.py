@@ -14,7 +14,7 @@ from mocapress.cli.library.opening import (
     opened,
     write_files,
 )
-from mocapress.cli.options import Debug, Force, Jobs, Json
+from mocapress.cli.options import Debug, Force, Jobs, Json, Limit
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -27,6 +27,7 @@ def export(
         Path, typer.Option("-o", "--output", help="Folder for the files.", metavar="FOLDER")
     ] = Path(),
     label: Label = None,
+    limit: Limit = None,
     jobs: Jobs = 1,
     force: Force = False,
     json: Json = False,
@@ -35,7 +36,7 @@ def export(
     """Write clips as .mcz files, with their skeletons; nothing is coded again but shared frames."""
     from mocapress.library import names
 
-    with opened(file, debug=debug) as library:
+    with opened(file, debug=debug, limit=limit) as library:
         files = jobs_of(chosen(library, patterns, label))
         for job in files:
             job.target, job.force = output / f"{names.checked(str(job.source))}.mcz", force

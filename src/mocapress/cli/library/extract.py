@@ -14,7 +14,7 @@ from mocapress.cli.library.opening import (
     opened,
     write_files,
 )
-from mocapress.cli.options import Debug, Force, Jobs, Json, Models
+from mocapress.cli.options import Debug, Force, Jobs, Json, Limit, Models
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -28,6 +28,7 @@ def extract(
     ] = Path(),
     label: Label = None,
     models: Models = None,
+    limit: Limit = None,
     salvage: Annotated[
         bool,
         typer.Option(
@@ -43,7 +44,7 @@ def extract(
     from mocapress.cli.models import open_models
     from mocapress.library import extracting, names
 
-    with opened(file, debug=debug, models=open_models(models or [])) as library:
+    with opened(file, debug=debug, models=open_models(models or []), limit=limit) as library:
         if salvage and not patterns and label is None:
             items = extracting.left(library)
         else:

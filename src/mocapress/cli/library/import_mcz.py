@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mocapress.cli.library.opening import File, opened
-from mocapress.cli.options import Debug, Jobs, Json, Models
+from mocapress.cli.options import Debug, Jobs, Json, Limit, Models
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -22,6 +22,7 @@ def import_mcz(
         str, typer.Option("--into", help="Folder in the library.", metavar="FOLDER")
     ] = "",
     models: Models = None,
+    limit: Limit = None,
     jobs: Jobs = 1,
     json: Json = False,
     debug: Debug = False,
@@ -45,7 +46,7 @@ def import_mcz(
         def add(job: "Job") -> "Added":
             own = str(job.source.relative_to(job.base)).removesuffix(".mcz")
             name = f"{into.strip('/')}/{own}".lstrip("/")
-            source = job.opened()
+            source = job.opened(limit)
             if source.kind != MCZ:
                 raise CorruptError("not compressed by mocapress", file=str(job.source))
             adder = library.adder(overwrite=True, models=places_for(job, given))

@@ -63,12 +63,19 @@ def telling(path: str, *, debug: bool) -> Iterator[None]:
 
 @contextmanager
 def opened(
-    path: str, mode: str = "r", *, debug: bool = False, models: "Sequence[Place]" = ()
+    path: str,
+    mode: str = "r",
+    *,
+    debug: bool = False,
+    models: "Sequence[Place]" = (),
+    limit: int | None = None,
 ) -> "Iterator[Library]":
-    """Open a library; see ``telling``."""
+    """Open a library, of whose clips so many bytes may be restored; see ``telling``."""
     from mocapress.library import open_library
+    from mocapress.source import LIMIT
 
-    with telling(path, debug=debug), open_library(path, mode, models=models) as library:
+    most = LIMIT if limit is None else limit
+    with telling(path, debug=debug), open_library(path, mode, models=models, limit=most) as library:
         yield library
 
 

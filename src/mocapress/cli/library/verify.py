@@ -11,7 +11,7 @@ from mocapress.cli.library.opening import (
     opened,
     sharded,
 )
-from mocapress.cli.options import Debug, Jobs, Json, Models
+from mocapress.cli.options import Debug, Jobs, Json, Limit, Models
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -21,20 +21,23 @@ def verify(
     file: File,
     patterns: Patterns = None,
     models: Models = None,
+    limit: Limit = None,
     cluster: Cluster = None,
     jobs: Jobs = 1,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
     """Decode clips and check all their checksums; exit code 3 if one is damaged."""
-    from mocapress.cli.batch import run
+    from mocapress.cli.batch import run, usage
     from mocapress.cli.models import open_models
     from mocapress.errors import CorruptError
 
-    with opened(file, debug=debug, models=open_models(models or [])) as library:
+    with opened(file, debug=debug, models=open_models(models or []), limit=limit) as library:
         clips = chosen(library, patterns)
         shards = sharded(library, cluster)
         if shards is not None:
+            if limit is not None:
+                usage("--limit is for libraries of one file")
             from mocapress.cli.library.shards import verify_shards
 
             verify_shards(shards, clips, cluster=cluster, jobs=jobs, json=json, debug=debug)

@@ -8,14 +8,20 @@ from mocapress.library.sharded import manifest
 from mocapress.library.sharded.library import ShardedLibrary, create
 from mocapress.library.sharded.store import Store
 from mocapress.models import Place
+from mocapress.source import LIMIT
 
 __all__ = ["ShardedLibrary", "create", "open_sharded"]
 
 
 def open_sharded(
-    url: str, mode: str = READ, *, wait: float = WAIT, models: Sequence[Place] = ()
+    url: str,
+    mode: str = READ,
+    *,
+    wait: float = WAIT,
+    models: Sequence[Place] = (),
+    limit: int | None = LIMIT,
 ) -> ShardedLibrary:
     """Open a sharded library; see ``open_library``."""
     if mode == APPEND and not manifest.newest(Store(url)):
         create(url)
-    return ShardedLibrary(url, mode, wait=wait, models=models)
+    return ShardedLibrary(url, mode, wait=wait, models=models, limit=limit)

@@ -16,10 +16,12 @@ from mocapress.library.reading import READ, Which
 from mocapress.library.sharded import manifest
 from mocapress.library.sharded.index import SERIAL, fill, insert_values, writable
 from mocapress.library.sharded.manifest import CLIP, COMPANION, MODEL, Manifest, shard_file
+from mocapress.library.sharded.places import Place as Part
 from mocapress.library.sharded.places import joined
 from mocapress.library.sharded.sealing import unflattened
 from mocapress.library.sharded.store import Store
 from mocapress.models import Place
+from mocapress.source import LIMIT
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -39,9 +41,15 @@ class ShardedReading(Library):
     """
 
     def __init__(
-        self, url: str, mode: str = READ, *, wait: float = WAIT, models: Sequence[Place] = ()
+        self,
+        url: str,
+        mode: str = READ,
+        *,
+        wait: float = WAIT,
+        models: Sequence[Place] = (),
+        limit: int | None = LIMIT,
     ) -> None:
-        self.url, self.mode, self.wait = url, mode, wait
+        self.url, self.mode, self.wait, self.limit = url, mode, wait, limit
         self.store = Store(url)
         self._lock = threading.RLock()
         self._folder = tempfile.TemporaryDirectory(prefix="mocapress-", ignore_cleanup_errors=True)
@@ -57,8 +65,13 @@ class ShardedReading(Library):
         file = Path(self._folder.name, f"{found.number}.mocapdb")
         self._row, self._models = fill(file, found, self.url)
         self._there: set[tuple[str, int]] = set()
+<<<<<<< HEAD
         self._featured: set[int] = set()
         super().__init__(Database(file, writable=False, wait=self.wait), models)
+=======
+        db = Database(file, writable=False, wait=self.wait, limit=self.limit)
+        super().__init__(db, models)
+>>>>>>> search26
 
     def refresh(self, found: Manifest) -> None:
         """Be what a newer manifest says."""
@@ -84,7 +97,13 @@ class ShardedReading(Library):
         self._folder.cleanup()
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"url": self.url, "mode": self.mode, "wait": self.wait, "models": self.models}
+        return {
+            "url": self.url,
+            "mode": self.mode,
+            "wait": self.wait,
+            "models": self.models,
+            "limit": self.limit,
+        }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state)  # type: ignore[misc]
@@ -115,7 +134,7 @@ class ShardedReading(Library):
             wanted = [(CLIP, number) for number in self._with_sources(clips)]
             wanted += [(MODEL, number) for number in self._models_of(wanted)]
             wanted += [(COMPANION, number) for number in companions]
-            missing = [key for key in wanted if key not in self._there]
+            missing = [key for key in wanted if key in self._row and key not in self._there]
             if not missing:
                 return
             rows = self.manifest.rows.take([self._row[key] for key in missing]).to_pylist()
@@ -185,7 +204,7 @@ class ShardedReading(Library):
         values = {}
         for shard, keys in of_shard.items():
             file = shard_file(shard)
-            lists = [unflattened(rows[index][f"{what}_places"]) for index, what in keys]
+            lists = [self._places(rows[index], what) for index, what in keys]
             spans = [(place.begin, place.begin + place.size) for each in lists for place in each]
             most = REQUESTS * len({index for index, _ in keys})
             try:
@@ -197,6 +216,18 @@ class ShardedReading(Library):
                 size = rows[index][f"{what}_size"]
                 values[index, what] = joined(own, each, size, schema.PAGE)
         return values
+
+    def _places(self, row: dict[str, Any], what: str) -> list[Part]:
+        """Give the places of a value, which are in the shard."""
+        flat, size = row[f"{what}_places"], row[f"{what}_size"]
+        whole = self.manifest.shards[row["shard"]][1]
+        places = unflattened(flat) if len(flat) % 3 == 0 else []
+        inside = all(0 <= p.begin <= p.begin + p.size <= whole for p in places)
+        if not places or not inside or size is None or size < 0:
+            raise CorruptError(
+                "the manifest is damaged: where a value stands", file=self.url, found=row["name"]
+            )
+        return places
 
 
 def missing_shard(store: Store, found: Manifest, shard: str) -> CorruptError:
