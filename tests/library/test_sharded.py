@@ -295,6 +295,35 @@ def test_a_fork_reads_on_its_own(lib: str, raw: Path) -> None:
         assert library.read_bytes("walks/01.amc") == wanted[0]
 
 
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [
+        ("index_version", None),
+        ("index_version", -(2**63)),
+        ("signature", b"short"),
+        ("features_size", -1),
+        ("features_size", None),
+        ("features_places", [1]),
+        ("features_places", [0, 100, 0]),
+        ("features_checksum", None),
+    ],
+)
+def test_a_forged_index_is_not_used(tmp_path: Path, samples: Path, column: str, value: Any) -> None:
+    url = f"{tmp_path / 'lib'}/"
+    with mp.open_library(url, "a") as library:
+        library.add(samples / "freebvh.bvh")
+        rows = library.manifest.rows.to_pylist()  # type: ignore[attr-defined]
+        forged = replace(
+            library.manifest,  # type: ignore[attr-defined]
+            rows=manifest.table_of([row | {column: value} for row in rows]),
+        )
+    max(Path(url, "manifest").iterdir()).write_bytes(forged.data)
+    done = mocapress("search", url, samples / "freebvh.bvh")
+    assert done.exit_code in (0, 1)
+    assert "defect" not in done.stderr
+    assert "freebvh.bvh" in (done.stderr if done.exit_code else done.stdout)
+
+
 def test_a_search_reads_no_motion(tmp_path: Path, samples: Path) -> None:
     pytest.importorskip("pyarrow")
     url = f"{tmp_path / 'lib'}/"

@@ -100,7 +100,7 @@ def _insert_clip(
         f"INSERT INTO clips(id, {COLUMNS}, checksum) VALUES({marks})",
         (number, *clip, checksum(clip)),
     )
-    if row["signature"] is not None:
+    if row["signature"] is not None and row["index_version"] is not None:
         crc = index_checksum(row["index_version"], row["signature"])
         connection.execute(
             "INSERT INTO signatures VALUES(?, ?, ?, ?)",

@@ -65,13 +65,9 @@ class ShardedReading(Library):
         file = Path(self._folder.name, f"{found.number}.mocapdb")
         self._row, self._models = fill(file, found, self.url)
         self._there: set[tuple[str, int]] = set()
-<<<<<<< HEAD
         self._featured: set[int] = set()
-        super().__init__(Database(file, writable=False, wait=self.wait), models)
-=======
         db = Database(file, writable=False, wait=self.wait, limit=self.limit)
         super().__init__(db, models)
->>>>>>> search26
 
     def refresh(self, found: Manifest) -> None:
         """Be what a newer manifest says."""
@@ -166,7 +162,7 @@ class ShardedReading(Library):
                 connection.executemany(
                     "INSERT OR IGNORE INTO features VALUES(?, ?, ?)",
                     [
-                        (numbers[at], rows[at]["features_checksum"], value)
+                        (numbers[at], rows[at]["features_checksum"] or 0, value)
                         for (at, _), value in values.items()
                     ],
                 )

@@ -7,11 +7,8 @@ the chunks of a clip stand in successive pages.
 import hashlib
 import sqlite3
 from contextlib import closing
-<<<<<<< HEAD
 from itertools import product
-=======
 from mmap import mmap
->>>>>>> search26
 from pathlib import Path
 from typing import Any
 
