@@ -24,7 +24,7 @@ from mocapress.errors import (
 from mocapress.version import __version__
 
 if TYPE_CHECKING:
-    from mocapress.api import compress, decompress, load, read, verify, write, writer
+    from mocapress.api import compress, decompress, encoder, load, read, verify, write, writer
     from mocapress.codecs import Model, codec
     from mocapress.container.diffma_json import to_json
     from mocapress.library import Library, StoredClip, open_library
@@ -85,6 +85,7 @@ __all__ = [
     "concat",
     "crop",
     "decompress",
+    "encoder",
     "events",
     "force_plates",
     "from_array",
@@ -117,7 +118,8 @@ __all__ = [
 # NumPy and the extension are loaded when they are first needed: importing mocapress stays quick.
 _LAZY = {
     **dict.fromkeys(
-        ("compress", "decompress", "load", "read", "verify", "write", "writer"), "mocapress.api"
+        ("compress", "decompress", "encoder", "load", "read", "verify", "write", "writer"),
+        "mocapress.api",
     ),
     **dict.fromkeys(("Model", "codec"), "mocapress.codecs"),
     **dict.fromkeys(("to_amc_clip", "to_bvh_clip"), "mocapress.motion.convert"),

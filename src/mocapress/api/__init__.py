@@ -7,13 +7,14 @@ from mocapress.api.loading import columns_of, load, load_source
 from mocapress.api.long import LONG, LongFile, compress_long, restored_long
 from mocapress.api.opening import Opened
 from mocapress.api.reading import printed, read, read_source, write
-from mocapress.api.recording import Recording, writer
+from mocapress.api.recording import Encoder, Recording, encoder, writer
 from mocapress.api.restoring import Restored, decompress, restore
 
 __all__ = [
     "LONG",
     "Checked",
     "Compressed",
+    "Encoder",
     "LongFile",
     "Opened",
     "Recording",
@@ -24,6 +25,7 @@ __all__ = [
     "compress_long",
     "compress_source",
     "decompress",
+    "encoder",
     "load",
     "load_source",
     "printed",

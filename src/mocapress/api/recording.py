@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -11,10 +12,10 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mocapress import codecs
+from mocapress.api.clips import checked_codec
 from mocapress.api.encoding import coded_chunks, stored_skeleton, stream_head
 from mocapress.api.opening import decoded
-from mocapress.codecs import DEFAULT_CODEC, Codec
+from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.container import Head, MczWriter, is_storable_time
 from mocapress.container.limits import most_values
 from mocapress.errors import ParameterError, UnsupportedError, VerificationError
@@ -35,26 +36,33 @@ class Recording:
         clip: Clip,
         codec: Codec,
         notes: Mapping[str, str],
+        model: Model | None = None,
     ) -> None:
-        self._clip, self._codec = clip, codec
+        self._clip, self._codec, self._model = clip, codec, model
         self._name = next(iter(clip.streams))
         self._most = getattr(codec, "chunk", _USUAL_CHUNK)
         self._waiting: list[NDArray[np.float64]] = []
         self._held = 0
         self.frames = 0
         """Frames that are in the file."""
-        self._head = stream_head(self._name, clip.main, codec, frames=None)
+        self._head = replace(
+            stream_head(self._name, clip.main, codec, frames=None),
+            model=model.digest if model else b"",
+        )
         # What cannot be stored is refused before there is a file.
         self._begin(MczWriter(bytearray().extend), notes)
+        self._file: int | None = self._opened(path)
+        self._mcz = MczWriter(self._put)
+        self._begin(self._mcz, notes)
+        self._sync()
+
+    def _opened(self, path: str | Path) -> int:
         try:
-            self._file: int | None = os.open(
+            return os.open(
                 path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666
             )
         except FileExistsError:
             raise ExistsError("file exists; a recording needs a new one", file=str(path)) from None
-        self._mcz = MczWriter(self._put)
-        self._begin(self._mcz, notes)
-        self._sync()
 
     def _begin(self, mcz: MczWriter, notes: Mapping[str, str]) -> None:
         mcz.head(Head((self._head,), stored_skeleton(self._clip)))
@@ -105,7 +113,7 @@ class Recording:
             self._mcz.end()
             self._sync()
         finally:
-            os.close(self._file)
+            self._shut()
             self._file = None
 
     def __enter__(self) -> Self:
@@ -129,9 +137,11 @@ class Recording:
 
     def _write_chunk(self, rows: NDArray[np.float64]) -> None:
         clip = self._clip.with_frames(rows, self._clip.frame_time)
-        encoded = self._codec.encode(clip.main, skeleton=clip.skeleton)
+        encoded = self._codec.encode(clip.main, skeleton=clip.skeleton, model=self._model)
         if self._codec.lossless:
-            back = decoded(self._codec, encoded.header, encoded.chunks, self._head, None, len(rows))
+            back = decoded(
+                self._codec, encoded.header, encoded.chunks, self._head, self._model, len(rows)
+            )
             if back.tobytes() != rows.tobytes():
                 raise VerificationError(f"codec {self._codec.id} does not give back the frames")
         if (self.frames + len(rows)) * max(clip.channels, 1) > most_values(self._mcz.length):
@@ -142,13 +152,17 @@ class Recording:
             0,
             self._codec,
             encoded,
-            None,
+            self._model,
             first=self.frames,
             own_header=True,
         ):
             self._mcz.chunk(chunk)
         self._sync()
         self.frames += len(rows)
+
+    def _shut(self) -> None:
+        assert self._file is not None
+        os.close(self._file)
 
     def _put(self, data: bytes) -> None:
         assert self._file is not None
@@ -167,6 +181,84 @@ class Recording:
         os.fsync(self._file)
 
 
+class Encoder(Recording):
+    """A ``.mcz`` as a stream of bytes; see ``encoder``."""
+
+    def __init__(
+        self, clip: Clip, codec: Codec, notes: Mapping[str, str], model: Model | None
+    ) -> None:
+        self._made = bytearray()
+        super().__init__("", clip, codec, notes, model)
+
+    def push(self, rows: ArrayLike) -> bytes:
+        """Take a frame, (C,), or frames, (n, C): the bytes that are complete with them.
+
+        At most ``chunk`` - 1 frames of the codec wait. The first bytes hold the file's head.
+        """
+        self.append(rows)
+        return self._taken()
+
+    def finish(self) -> bytes:
+        """Give the bytes of the frames that wait, and the file's end."""
+        self.close()
+        return self._taken()
+
+    def _taken(self) -> bytes:
+        made = bytes(self._made)
+        self._made.clear()
+        return made
+
+    def _opened(self, path: str | Path) -> int:  # noqa: ARG002
+        return -1
+
+    def _put(self, data: bytes) -> None:
+        self._made += data
+
+    def _sync(self) -> None:
+        pass
+
+    def _shut(self) -> None:
+        pass
+
+
+def encoder(
+    columns: Sequence[Column | str],
+    rate: float | Fraction | Decimal | None,
+    *,
+    codec: str | Codec = DEFAULT_CODEC,
+    model: Model | None = None,
+    name: str = MOTION,
+    notes: Mapping[str, str] | None = None,
+) -> Encoder:
+    """Open a ``.mcz`` that is made frame by frame, as bytes.
+
+    >>> coder = mp.encoder(["C7.x", "C7.y", "C7.z"], 120, codec="patterns:chunk=60", model=walks)
+    >>> for frame in capture:
+    ...     connection.send(coder.push(frame))
+    >>> connection.send(coder.finish())
+
+    What was pushed is in the bytes after at most ``chunk`` frames of the codec, which is how long
+    a receiver waits. With a model, files of ``patterns`` hold no database of their own.
+
+    Parameters
+    ----------
+    columns, rate, codec, name, notes
+        See ``writer``.
+    model
+        What the codec learned from other clips.
+
+    Raises
+    ------
+    ParameterError
+        When there is no such codec, the model is not for it, or the rate is no number above 0.
+
+    """
+    made = checked_codec(codec, model)
+    named = named_columns(columns)
+    stream = Stream(np.empty((0, len(named))), named, _frame_time(rate))
+    return Encoder(Clip({name: stream}), made, notes or {}, model)
+
+
 def writer(
     path: str | Path,
     columns: Sequence[Column | str],
@@ -174,6 +266,7 @@ def writer(
     skeleton: Skeleton | None = None,
     *,
     codec: str | Codec = DEFAULT_CODEC,
+    model: Model | None = None,
     name: str = MOTION,
     notes: Mapping[str, str] | None = None,
 ) -> Recording:
@@ -198,6 +291,8 @@ def writer(
         Whose joints the columns move.
     codec
         A codec or its text.
+    model
+        What the codec learned from other clips.
     name
         Of the stream.
     notes
@@ -215,10 +310,10 @@ def writer(
         When it cannot be written.
 
     """
-    made = codecs.codec(codec) if isinstance(codec, str) else codec
+    made = checked_codec(codec, model)
     named = named_columns(columns)
     stream = Stream(np.empty((0, len(named))), named, _frame_time(rate))
-    return Recording(path, Clip({name: stream}, skeleton), made, notes or {})
+    return Recording(path, Clip({name: stream}, skeleton), made, notes or {}, model)
 
 
 def _frame_time(rate: float | Fraction | Decimal | None) -> Fraction | None:

@@ -92,6 +92,18 @@ def compress(
             metavar="KEY=VALUE",
         ),
     ] = None,
+    stream: Annotated[
+        bool,
+        typer.Option(
+            "--stream",
+            help="Compress frames as they come on stdin: a line of numbers each, after one with "
+            "the names of the columns. INPUT is -.",
+        ),
+    ] = False,
+    rate: Annotated[
+        float | None,
+        typer.Option("--rate", help="Frames per second of --stream.", min=1e-3),
+    ] = None,
     jobs: Jobs = 1,
     force: Force = False,
     skip_existing: SkipExisting = False,
@@ -122,6 +134,9 @@ def compress(
     made, notes = _codec(codec, to, level, learned, target_psnr), _notes(note or [], to)
     kinds = [of for of in formats() if of.split or (of.read_skeleton and made.lossless)]
     endings = suffixes(kinds)
+    if stream or rate is not None:
+        _stream(inputs, output, made, learned, rate, stream=stream, debug=debug)
+        return
     files = plan(
         find(inputs, endings),
         output,
@@ -185,6 +200,28 @@ def compress(
         verbose=verbose,
         debug=debug,
     )
+
+
+def _stream(
+    inputs: list[Path],
+    output: str | None,
+    made: "Codec",
+    learned: "Model | None",
+    rate: float | None,
+    *,
+    stream: bool,
+    debug: bool,
+) -> None:
+    from mocapress.cli import stream as streaming
+    from mocapress.cli.batch import STREAM, usage
+    from mocapress.cli.library.opening import telling
+
+    if not stream:
+        usage("--rate is for --stream")
+    if inputs != [STREAM]:
+        usage("--stream reads frames from stdin: mocapress compress --stream - -o FILE.mcz")
+    with telling("-", debug=debug):
+        streaming.stream(output, made, learned, rate)
 
 
 def _kind_of(output: str | None) -> Packed:
