@@ -2,11 +2,14 @@
 
 import json
 import multiprocessing
+import os
 import pickle
 import shutil
 import sqlite3
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +19,7 @@ from takes import amc_of
 import mocapress as mp
 from mocapress.library import schema
 from mocapress.library.sharded import manifest, open_sharded, publishing
+from mocapress.library.sharded.executor import executor
 from mocapress.library.sharded.manifest import shard_file
 from mocapress.library.sharded.places import joined, last_values
 from mocapress.library.sharded.store import Store
@@ -104,6 +108,8 @@ def test_python_reads_as_of_one_file(lib: str, raw: Path) -> None:
         assert (
             mp.decompress(library.read_mcz("walks/02.amc")) == (raw / "walks/02.amc").read_bytes()
         )
+        with pytest.raises(mp.ParameterError, match="no such clip"):
+            library.load(12345)
         assert library.windows(50, glob="walks")[3].shape == (50, 62)
         again = pickle.loads(pickle.dumps(library))
         assert again.read_bytes("z.bvh") == (raw / "z.bvh").read_bytes()
@@ -287,3 +293,38 @@ def test_a_fork_reads_on_its_own(lib: str, raw: Path) -> None:
         wanted = [(raw / f"walks/0{n}.amc").read_bytes() for n in (1, 2, 1)]
         assert found == wanted
         assert library.read_bytes("walks/01.amc") == wanted[0]
+
+
+def test_a_process_that_dies_is_told(lib: str) -> None:
+    with executor(jobs=2) as where, pytest.raises(OSError, match="died"):
+        where.call(os._exit, 1)
+
+
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [
+        ("size", -1),
+        ("id", 2**63 - 1),
+        ("runs", [[1, 2]]),
+        ("value_size", -1),
+        ("value_places", [2**60, 2**60, 1]),
+        ("value_places", [1]),
+        ("skeleton_record", b"no skeleton"),
+        ("head", b""),
+        ("chunk_list", b"x"),
+    ],
+)
+def test_a_forged_manifest_is_told(tmp_path: Path, samples: Path, column: str, value: Any) -> None:
+    url = f"{tmp_path / 'lib'}/"
+    with mp.open_library(url, "a") as library:
+        library.add(samples / "freebvh.bvh")
+        rows = library.manifest.rows.to_pylist()  # type: ignore[attr-defined]
+        forged = replace(
+            library.manifest,  # type: ignore[attr-defined]
+            rows=manifest.table_of([row | {column: value} for row in rows]),
+        )
+    max(Path(url, "manifest").iterdir()).write_bytes(forged.data)
+    done = mocapress("library", "cat", url, "freebvh.bvh")
+    assert done.exit_code == 1
+    assert len(done.stderr.splitlines()) == 1
+    assert "defect" not in done.stderr

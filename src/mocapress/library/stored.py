@@ -46,8 +46,10 @@ class StoredMcz(Source):
         super().__init__(b"", self.facts.name, limit=db.limit)
         self.sound = checksum(self.facts) == found[1]
         """Whether the row of the clip has the right checksum."""
-        if not self.sound and not (salvage and _possible(self.facts)):
+        if not self.sound and not salvage:
             raise CorruptError("the facts have a wrong checksum", file=self.name)
+        if not _possible(self.facts):
+            raise CorruptError("the facts cannot be", file=self.name)
         self._front = self._before_chunks()
         self._chunks = Chunks(db, clip, salvage=salvage)
         start = len(self._front)
@@ -131,7 +133,7 @@ class StoredMcz(Source):
 
 
 def _possible(facts: Facts) -> bool:
-    """Say whether facts with a wrong checksum are such that a file can be put together."""
+    """Say whether facts are such that a file can be put together."""
     digest = facts.text is None or len(facts.sha256 or b"") == 32
     return digest and (facts.size or 0) >= 0 and facts.frames >= 0
 

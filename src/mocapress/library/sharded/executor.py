@@ -1,8 +1,10 @@
 """Where the tasks of a job run: here, in processes of this machine, or on a Dask cluster."""
 
+import errno
 import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from importlib import import_module
 from multiprocessing import active_children, get_context
@@ -45,7 +47,10 @@ class _Processes:
         self._pool, self.width = pool, width
 
     def call(self, work: Callable[[T], R], task: T) -> R:
-        return self._pool.submit(work, task).result()
+        try:
+            return self._pool.submit(work, task).result()
+        except BrokenProcessPool as error:
+            raise OSError(errno.ECHILD, "the process that worked on it died") from error
 
     def stop(self) -> None:
         for process in active_children():
@@ -61,7 +66,13 @@ class _Dask:
     def call(self, work: Callable[[T], R], task: T) -> R:
         # A task that is asked for again is done again: it may have to write what was lost.
         future = self._client.submit(work, task, pure=False)
-        found: R = future.result()
+        try:
+            found: R = future.result()
+        except Exception as error:
+            if not type(error).__module__.startswith("distributed"):
+                raise
+            what = f"the cluster gave it up ({type(error).__name__}: workers died, or it ended)"
+            raise OSError(errno.ECHILD, what) from error
         return found
 
     def stop(self) -> None:
@@ -120,7 +131,9 @@ def _client(cluster: str) -> Iterator[Any]:
         try:
             client = dask.Client(cluster, timeout=_WAIT, set_as_default=False)
         except (OSError, ValueError) as error:
-            raise OSError(5, f"no Dask scheduler answers ({error})", cluster) from error
+            raise OSError(
+                errno.ECONNREFUSED, f"no Dask scheduler answers ({error})", cluster
+            ) from error
         with client:
             yield client
         return

@@ -5,6 +5,7 @@ each row, and the rest of a long one is in a chain of overflow pages, each of wh
 number of the next.
 """
 
+import mmap
 import sqlite3
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
@@ -35,7 +36,7 @@ class Pages:
     """The pages of a database that nobody writes."""
 
     def __init__(self, file: Path, page: int) -> None:
-        self._data, self._page, self._file = file.read_bytes(), page, file
+        self._data, self._page, self._file = mapped(file), page, file
 
     def rows(self, root: int) -> Iterator[tuple[int, list[Place], int]]:
         """Give of each row of a table its id, where its record stands, and the record's size."""
@@ -99,6 +100,12 @@ class Pages:
             if byte < 0x80:
                 return value, at + index + 1
         return value << 8 | self._data[at + 8], at + 9
+
+
+def mapped(file: Path) -> mmap.mmap:
+    """Give the bytes of a file as they are asked for."""
+    with file.open("rb") as stream:
+        return mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
 
 
 def last_values(

@@ -16,6 +16,7 @@ from mocapress.library.reading import READ, Which
 from mocapress.library.sharded import manifest
 from mocapress.library.sharded.index import fill, insert_values, writable
 from mocapress.library.sharded.manifest import CLIP, COMPANION, MODEL, Manifest, shard_file
+from mocapress.library.sharded.places import Place as Part
 from mocapress.library.sharded.places import joined
 from mocapress.library.sharded.sealing import unflattened
 from mocapress.library.sharded.store import Store
@@ -125,7 +126,7 @@ class ShardedReading(Library):
             wanted = [(CLIP, number) for number in self._with_sources(clips)]
             wanted += [(MODEL, number) for number in self._models_of(wanted)]
             wanted += [(COMPANION, number) for number in companions]
-            missing = [key for key in wanted if key not in self._there]
+            missing = [key for key in wanted if key in self._row and key not in self._there]
             if not missing:
                 return
             rows = self.manifest.rows.take([self._row[key] for key in missing]).to_pylist()
@@ -171,7 +172,7 @@ class ShardedReading(Library):
         values = {}
         for shard, keys in of_shard.items():
             file = shard_file(shard)
-            lists = [unflattened(rows[index][f"{what}_places"]) for index, what in keys]
+            lists = [self._places(rows[index], what) for index, what in keys]
             spans = [(place.begin, place.begin + place.size) for each in lists for place in each]
             most = REQUESTS * len({index for index, _ in keys})
             try:
@@ -183,6 +184,18 @@ class ShardedReading(Library):
                 size = rows[index][f"{what}_size"]
                 values[index, what] = joined(own, each, size, schema.PAGE)
         return values
+
+    def _places(self, row: dict[str, Any], what: str) -> list[Part]:
+        """Give the places of a value, which are in the shard."""
+        flat, size = row[f"{what}_places"], row[f"{what}_size"]
+        whole = self.manifest.shards[row["shard"]][1]
+        places = unflattened(flat) if len(flat) % 3 == 0 else []
+        inside = all(0 <= p.begin <= p.begin + p.size <= whole for p in places)
+        if not places or not inside or size is None or size < 0:
+            raise CorruptError(
+                "the manifest is damaged: where a value stands", file=self.url, found=row["name"]
+            )
+        return places
 
 
 def missing_shard(store: Store, found: Manifest, shard: str) -> CorruptError:

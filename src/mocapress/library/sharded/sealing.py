@@ -7,6 +7,7 @@ the chunks of a clip stand in successive pages.
 import hashlib
 import sqlite3
 from contextlib import closing
+from mmap import mmap
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from mocapress.library.database import Database
 from mocapress.library.opened import OpenedClip
 from mocapress.library.rows import Facts, read_clip
 from mocapress.library.sharded.manifest import CLIP, COMPANION, MODEL
-from mocapress.library.sharded.places import Place, joined, last_values
+from mocapress.library.sharded.places import Place, joined, last_values, mapped
 
 _OTHERS = """
 SELECT name FROM made.sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%'
@@ -176,7 +177,7 @@ def _clip(db: Database, clip: int) -> dict[str, Any]:
 
 def _check(db: Database, rows: list[dict[str, Any]]) -> None:
     """See that what stands at the places is what the tables say."""
-    data = db.path.read_bytes()
+    data = mapped(db.path)
     queries = {
         CLIP: "SELECT list, sections FROM chunks WHERE clip = ?",
         MODEL: "SELECT file FROM models WHERE id = ?",
@@ -189,7 +190,7 @@ def _check(db: Database, rows: list[dict[str, Any]]) -> None:
                 raise VerificationError(f"{row['name']} is not where it should be in the shard")
 
 
-def value_of(data: bytes, flat: list[int], size: int) -> bytes:
+def value_of(data: bytes | mmap, flat: list[int], size: int) -> bytes:
     """Give the value that stands at places of a file."""
     places = unflattened(flat)
     parts = [data[place.begin : place.begin + place.size] for place in places]
