@@ -290,7 +290,8 @@ void bind_formats(nb::module_& module) {
       .def_ro("fault", &SkeletonFile::fault)
       .def_prop_ro("joints", [](const SkeletonFile& s) { return joints_of(s.skeleton); })
       .def_prop_ro("name", [](const SkeletonFile& s) { return text(s.skeleton.name); })
-      .def_prop_ro("mass", [](const SkeletonFile& s) { return text(s.skeleton.mass); })
+      .def_prop_ro("mass",
+                   [](const SkeletonFile& s) { return text(decoded_name(s.skeleton.mass)); })
       .def_prop_ro("radians", [](const SkeletonFile& s) { return s.skeleton.radians; })
       .def_prop_ro("length_unit", [](const SkeletonFile& s) { return s.skeleton.length_unit; });
   const auto data = nb::arg("data");

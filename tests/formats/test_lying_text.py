@@ -64,6 +64,7 @@ CHANGES = {
     ".asf": [
         (b"root leg", b"leg leg"),
         (b"root leg", b"\xa0"),
+        (b"length 0.45", b"mass 1\x80\n length 0.45"),
         (b"length 0.45", b"length nan"),
         (b"length 0.45", b"length 0"),
         (b"length 0.45", b"length 1e-320"),

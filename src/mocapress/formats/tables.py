@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.errors import FormatError
+from mocapress.errors import CorruptError, FormatError
 from mocapress.formats.bids import channels_beside
 from mocapress.formats.contract import Format, LongSplit, Near, Split
 from mocapress.formats.layout import NO_ROWS
@@ -204,7 +204,7 @@ def _number(cell: bytes) -> float:
 
 def described(layout: Any, clip: Clip, near: Near) -> Clip:
     """Give the columns of numbers, with their names; those of Motion-BIDS stand beside the file."""
-    stream = clip.streams[TABLE]
+    stream = stream_of(clip, TABLE)
     values, names = full_values(layout, stream.values), names_of(layout)
     units, time = [""] * len(names), stream.frame_time
     beside = channels_beside(near, len(names))
@@ -222,6 +222,13 @@ def described(layout: Any, clip: Clip, near: Near) -> Clip:
     )
     matrix = np.stack(list(kept.values()), axis=1)
     return replace(clip, streams={TABLE: Stream(matrix, columns, time)})
+
+
+def stream_of(clip: Clip, name: str) -> Stream:
+    """Give the stream that a layout is about; a file that lies may have another."""
+    if name not in clip.streams:
+        raise CorruptError("streams", expected=repr(name), found=repr(", ".join(clip.streams)))
+    return clip.streams[name]
 
 
 def named_columns(names: Sequence[str]) -> tuple[Column, ...]:

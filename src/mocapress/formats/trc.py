@@ -16,7 +16,7 @@ from mocapress.formats.number_formats import SHORTEST, printed
 from mocapress.formats.problems import EXTRA_ROWS, MISSING_ROWS, Problem
 from mocapress.formats.table_layout import SERIES, TableLayout, read_layout
 from mocapress.formats.table_writing import blank, counted, with_frames
-from mocapress.formats.tables import TABLE, full_values, header_lines
+from mocapress.formats.tables import TABLE, full_values, header_lines, stream_of
 from mocapress.formats.tables import split as split_table
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.columns import distinct
@@ -75,7 +75,7 @@ def _problems(layout: TableLayout, facts: dict[str, str]) -> list[Problem]:
 
 def described(layout: Any, clip: Clip, _: Near) -> Clip:
     """Give the markers: x, y and z of each, with the names and the unit of the header."""
-    stream = clip.streams[POINTS]
+    stream = stream_of(clip, POINTS)
     values = full_values(layout, stream.values)
     lines = header_lines(layout)
     labels = next((line for line in reversed(lines) if line[0].startswith("Frame")), [])

@@ -39,7 +39,7 @@ class Patterns(Codec):
     """Body parts as segments that follow patterns of a database.
 
     For markers (C3D, TRC) and joint positions; other columns are coded as they are. With the usual
-    values errors are about 3 % of the head's diagonal (ADDH), 6.5 mm.
+    values errors are about 3 % of the head's diagonal (ADDH), 6 to 7 mm.
     """
 
     id: ClassVar[str] = "patterns"
@@ -67,7 +67,7 @@ class Patterns(Codec):
     hierarchy: str = AUTOMATIC
     """``auto``, ``vicon``, ``joints``, ``rigid``, or a file; see docs/guide/patterns.md."""
     weights: str = ""
-    """Of markers, ``LTOE:10+RTOE:10``: a marker of weight 10 is ten times as exact."""
+    """Of markers, ``LTOE:10+RTOE:10``; those of more weight have smaller errors."""
     protect: str = ""
     """Markers that are coded apart, ``LTOE+RTOE``."""
     protect_error: float = 0.5
