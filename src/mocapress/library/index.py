@@ -9,6 +9,7 @@ from mocapress.library.rows import Connection
 from mocapress.library.schema import SEARCH, version_of
 from mocapress.motion import Clip
 from mocapress.search.index import VERSION, Entry, entry_of
+from mocapress.search.signatures import BYTES
 from mocapress.search.standard import standard_motion
 
 NOTHING = Entry(b"", b"")
@@ -68,9 +69,13 @@ def signatures(connection: Connection) -> list[Kept]:
         "LEFT JOIN signatures ON clip = id WHERE frames > 0 ORDER BY id"
     )
     return [
-        Kept(clip, signature if version == VERSION and is_sound(VERSION, signature, crc) else None)
+        Kept(clip, signature if version == VERSION and _is_usable(signature, crc) else None)
         for clip, version, signature, crc in rows
     ]
+
+
+def _is_usable(signature: bytes, crc: int) -> bool:
+    return is_sound(VERSION, signature, crc) and len(signature) in (0, BYTES)
 
 
 def is_sound(version: int, data: object, crc: int) -> bool:

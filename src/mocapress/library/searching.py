@@ -141,12 +141,14 @@ def search(
         else:
             motion = _motion(library, query, frames, joints)
             queries = [entry_of(motion), *([entry_of(motion.mirrored())] if mirror else [])]
-        for entry in queries:
-            if within:
+        if within:
+            for entry in queries:
                 everything = ((place, features(place)) for place in range(len(searchable.clips)))
                 found += find(entry, everything, top)
-            else:
-                found += rank(entry, searchable.signatures, features, top + (own >= 0))
+        else:
+            first, mirrored = queries[0], queries[1] if mirror else None
+            wanted = top + (own >= 0)
+            found = rank(first, searchable.signatures, features, wanted, mirrored=mirrored)
     best = _best(hit for hit in found if within or hit.place != own)
     with library.db.reading() as connection:
         return [

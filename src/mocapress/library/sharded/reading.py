@@ -155,7 +155,7 @@ class ShardedReading(Library):
                 return
             numbers = [n for kind, n in self._row if kind == CLIP and n // SERIAL in missing]
             wanted = self.manifest.rows.take([self._row[CLIP, n] for n in numbers])
-            rows = wanted.select(["shard", *_FEATURES]).to_pylist()
+            rows = wanted.select(["name", "shard", *_FEATURES]).to_pylist()
             values = self._read(rows, ("features",))
             with closing(writable(self.db.path)) as connection:
                 connection.execute("BEGIN")
