@@ -404,6 +404,23 @@ def near_encode(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], 
 def near_decode(header: bytes, payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
     """Fill ``values`` from a chunk; ValueError where it is none."""
 
+def patterns_database(body: bytes, columns: int, bases: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], centres: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], terms: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], differences: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], quantisers: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> bytes:
+    """Code the database that ends a body: core/patterns/plan.hpp."""
+
+def patterns_shapes(header: bytes, model: bytes, columns: int, node: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None))]:
+    """Give a node's patterns, (patterns, frames, components)."""
+
+def patterns_nodes(header: bytes, model: bytes, columns: int) -> list[tuple[int, int, float, Annotated[NDArray[numpy.float64], dict(shape=(None,))], Annotated[NDArray[numpy.float64], dict(shape=(None,))]]]:
+    """
+    Give of each node its frames, components, importance, basis and centre.
+    """
+
+def patterns_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], filled: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], kept: Annotated[NDArray[numpy.uint8], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, model: bytes, segments: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], projections: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], max_error: float, protected_error: float) -> bytes:
+    """Code rows of values as a chunk: core/patterns/codec.hpp."""
+
+def patterns_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], header: bytes, model: bytes) -> None:
+    """Fill ``values`` from a chunk; ValueError where it is none."""
+
 def qssd_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, model: bytes, most: int, rounding: float, rest_rounding: float, max_error: float) -> bytes:
     """Code rows of values as a chunk: core/qssd_learning/encoder.hpp."""
 
