@@ -69,5 +69,6 @@ void bind_near(nb::module_& module);
 void bind_patterns(nb::module_& module);
 void bind_qssd(nb::module_& module);
 void bind_qssd_learning(nb::module_& module);
+void bind_search(nb::module_& module);
 
 }  // namespace mocapress

@@ -17,4 +17,5 @@ NB_MODULE(_core, module) {
   mocapress::bind_patterns(module);
   mocapress::bind_qssd(module);
   mocapress::bind_qssd_learning(module);
+  mocapress::bind_search(module);
 }

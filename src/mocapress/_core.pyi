@@ -464,3 +464,18 @@ def code_by_sums(rows: Annotated[NDArray[numpy.float64], dict(shape=(None, None)
 
 def learn_sums(rows: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], dictionary: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], atoms: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu')], weights: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
     """Improve ``dictionary`` and ``weights`` in place: Algorithm 1."""
+
+def scan_signatures(wanted: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu', writable=False)], others: Annotated[NDArray[numpy.int8], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.int32], dict(shape=(None,))]:
+    """
+    Squared distances of an int8 signature (D,) from others (N, D): (N,) int32.
+    """
+
+def warp(one: Annotated[NDArray[numpy.float32], dict(shape=(None, None), order='C', device='cpu', writable=False)], other: Annotated[NDArray[numpy.float32], dict(shape=(None, None), order='C', device='cpu', writable=False)], limit: float) -> float:
+    """
+    Mean distance along the best alignment of (F, D) and (G, D), or infinity where it is above the limit.
+    """
+
+def find_stretches(wanted: Annotated[NDArray[numpy.float32], dict(shape=(None, None), order='C', device='cpu', writable=False)], motion: Annotated[NDArray[numpy.float32], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> tuple:
+    """
+    Of each frame of the motion (G, D), the best match of (F, D) that ends there: mean distances (G,), infinite for none, and first frames (G,).
+    """

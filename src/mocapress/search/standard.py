@@ -20,8 +20,12 @@ RATE = 30
 """Frames a second of all that is compared."""
 ASSUMED_RATE = 120.0
 """Frames a second of a clip that states none, such as an AMC."""
+_LEAST_RATE = 1.0
+"""Of slower ones many frames would be made of few, without bounds."""
 _CHEST = 0.7
 """How far from the hips to the neck the chest is, where there is no such joint."""
+_FAR = 1e9
+"""Length units; what is farther away would not be compared in floating point."""
 _SMOOTH = 5.0
 """Frames at 30 Hz over which the heading is smoothed (standard deviation)."""
 _USUAL_Y = 1.2
@@ -94,7 +98,7 @@ def standard_motion(
         When the mapping names what is not there.
     UnsupportedError
         When there is no skeleton, or bones stretch; when joints are missing, which are named; when
-        there are no frames, or a place is not a number.
+        there are no frames, or less than one a second, or a place is not a usable number.
 
     """
     if clip.skeleton is None:
@@ -102,6 +106,13 @@ def standard_motion(
     if not clip.frames:
         raise UnsupportedError("search needs frames, and the clip has none", file=_name(clip))
     own_rate = clip.fps or rate or ASSUMED_RATE
+    if own_rate < _LEAST_RATE:
+        raise UnsupportedError(
+            "search needs motion",
+            file=_name(clip),
+            expected=f"{_LEAST_RATE:g} frame a second or more",
+            found=f"{own_rate:g}",
+        )
     count = int(Fraction(clip.frames - 1) * RATE / Fraction(own_rate) + Fraction(1, 1000)) + 1
     moments = np.minimum(np.arange(count) * (own_rate / RATE), clip.frames - 1)
     before = np.floor(moments + 1e-6).astype(np.intp)
@@ -110,8 +121,9 @@ def standard_motion(
     if (part < 1e-6).all():
         needed = before
     all_places = positions(clip.with_frames(clip.values[needed], clip.frame_time))
-    if not np.isfinite(all_places).all():
-        raise UnsupportedError("search needs places that are numbers", file=_name(clip))
+    if not (np.abs(all_places) < _FAR).all():
+        what = "search needs places that are numbers, none of them huge"
+        raise UnsupportedError(what, file=_name(clip))
     found = _correspondence(clip, mapping, all_places[0])
     places = _sixteen(all_places, found)
     if needed is not before:
@@ -163,7 +175,7 @@ def _standing(places: Array, name: str | None) -> StandardMotion:
         ankles = ankles[..., [0, 2, 1]] * (1, 1, -1)
     bones = np.linalg.norm(np.diff(places[:, _LEGS], axis=2), axis=-1).sum(axis=2)
     leg = float(np.median(bones))
-    if not leg > 0:
+    if not leg > float(np.abs(places).max()) / _FAR:
         raise UnsupportedError("search needs legs that are longer than 0", file=name)
     places = places / leg
     heading = _headings(places)

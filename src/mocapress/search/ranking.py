@@ -1,0 +1,155 @@
+"""Which clips, or which stretches of them, are most like a query."""
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapress import _core
+from mocapress.search.features import EVERY, Features, read_record
+from mocapress.search.index import Entry
+from mocapress.search.signatures import BYTES
+from mocapress.search.standard import RATE
+
+Array = NDArray[np.float64]
+
+_CANDIDATES = 100
+"""Clips that are compared closely, or five times as many as are wanted."""
+_FIRST = 3
+"""The best clips, whose own neighbours count, too."""
+_SIGNED, _ALIGNED = 55.0, 1.9
+"""Distances of signatures and of alignments that count 1: the former is how they spread over the
+candidates for a query, the latter ten times that. So scores of different queries can be compared.
+"""
+_FRAMES = 256
+"""Frames of clips that are aligned; longer ones are thinned."""
+_ABANDON, _ENOUGH = 3.0, 5
+"""Alignments are given up, and count as so bad, when so many times as bad as the fifth best."""
+_OVERLAP = 0.5
+"""Share of the shorter of two stretches by which they may overlap."""
+
+
+class Hit(NamedTuple):
+    """Something found."""
+
+    place: int
+    """Which of the clips that were given."""
+    score: float
+    """The smaller, the more alike."""
+    start: float = 0.0
+    """Seconds from the clip's first frame."""
+    end: float = 0.0
+    """Seconds to the end of the last frame; the clip's in a search for clips."""
+
+
+def rank(
+    query: Entry, signatures: Sequence[bytes], features: Callable[[int], bytes], top: int = 20
+) -> list[Hit]:
+    """Find the clips that are most like a query.
+
+    The nearest by signature are compared again: each is scored by its signature's distance from the
+    query and, on the average, from the three best clips, and by how well it aligns with the query.
+
+    Parameters
+    ----------
+    query
+        What is sought.
+    signatures
+        Of all clips, 64 bytes each.
+    features
+        Gives the record of a clip by its place; asked for candidates only.
+    top
+        How many are wanted at most.
+
+    Raises
+    ------
+    CorruptError
+        When a record is damaged.
+
+    """
+    if not signatures or top < 1:
+        return []
+    kept = np.frombuffer(b"".join(signatures), np.int8).reshape(len(signatures), BYTES)
+    near = _core.scan_signatures(np.frombuffer(query.signature, np.int8), kept)
+    most = min(max(_CANDIDATES, 5 * top), len(kept))
+    chosen = np.argsort(near, kind="stable")[:most]
+    apart = np.sqrt(near[chosen].astype(np.float64))
+    records = [read_record(features(int(place))) for place in chosen]
+    aligned = _alignments(read_record(query.features), records)
+    scores = apart / _SIGNED + aligned / _ALIGNED
+    best = np.argsort(scores, kind="stable")[:_FIRST]
+    candidates = np.ascontiguousarray(kept[chosen])
+    theirs = [np.sqrt(_core.scan_signatures(candidates[i], candidates)) for i in best]
+    scores = scores + np.mean(theirs, axis=0) / _SIGNED
+    order = np.argsort(scores, kind="stable")[:top]
+    return [
+        Hit(int(chosen[i]), float(scores[i]), 0.0, len(records[i]) * EVERY / RATE) for i in order
+    ]
+
+
+def find(query: Entry, features: Iterable[tuple[int, bytes]], top: int = 20) -> list[Hit]:
+    """Find the stretches of clips that are most like a query, by subsequence alignment of all.
+
+    A stretch may be half to twice as long as the query. Those of one clip overlap by half at most.
+
+    Parameters
+    ----------
+    query
+        What is sought.
+    features
+        Places of clips, and their records.
+    top
+        How many stretches are wanted at most.
+
+    Raises
+    ------
+    CorruptError
+        When a record is damaged.
+
+    """
+    wanted = read_record(query.features)
+    hits: list[Hit] = []
+    for place, data in features:
+        costs, starts = _core.find_stretches(wanted, read_record(data))
+        hits += [
+            Hit(place, float(costs[end]), first * EVERY / RATE, (end + 1) * EVERY / RATE)
+            for first, end in _apart(costs, starts, top)
+        ]
+        if len(hits) > 16 * top:
+            hits = sorted(hits, key=lambda hit: hit.score)[:top]
+    return sorted(hits, key=lambda hit: hit.score)[:top]
+
+
+def _apart(costs: Array, starts: NDArray[np.int32], top: int) -> list[tuple[int, int]]:
+    """Give the best stretches that hardly overlap, as first and last frames, the best first."""
+    found: list[tuple[int, int]] = []
+    left = np.where(np.isfinite(costs), costs, np.inf)
+    ends = np.arange(len(costs))
+    lengths = ends - starts + 1
+    while len(found) < top and len(left):
+        end = int(left.argmin())
+        if not np.isfinite(left[end]):
+            break
+        first = int(starts[end])
+        found.append((first, end))
+        common = np.minimum(ends, end) - np.maximum(starts, first) + 1
+        left[common > _OVERLAP * np.minimum(lengths, end - first + 1)] = np.inf
+        left[end] = np.inf
+    return found
+
+
+def _alignments(wanted: Features, others: Sequence[Features]) -> Array:
+    query = _thinned(wanted)
+    costs: list[float] = []
+    limit = np.inf
+    for other in others:
+        costs.append(min(_core.warp(query, _thinned(other), limit), limit))
+        if len(costs) >= _ENOUGH:
+            limit = _ABANDON * sorted(costs)[_ENOUGH - 1]
+    return np.array(costs)
+
+
+def _thinned(features: Features) -> Features:
+    step = -(-len(features) // _FRAMES)
+    return np.ascontiguousarray(features[:: max(step, 1)])

@@ -1,0 +1,150 @@
+"""Search by example: what is alike is found, whatever the skeleton, the rate and the length."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from people import person
+
+from mocapress import _core
+from mocapress.errors import CorruptError
+from mocapress.motion import Clip
+from mocapress.search.features import SIZE, Features, features, read_record, record
+from mocapress.search.index import Entry, entry_of
+from mocapress.search.ranking import find, rank
+from mocapress.search.signatures import BYTES
+from mocapress.search.standard import standard_motion
+
+
+def entry(clip: Clip) -> Entry:
+    return entry_of(standard_motion(clip))
+
+
+def places(query: Entry, kept: Sequence[Entry], top: int = 20) -> list[int]:
+    hits = rank(query, [one.signature for one in kept], lambda place: kept[place].features, top)
+    assert [hit.score for hit in hits] == sorted(hit.score for hit in hits)
+    assert np.isfinite([hit.score for hit in hits]).all()
+    return [hit.place for hit in hits]
+
+
+@pytest.fixture(scope="module")
+def kept() -> list[Entry]:
+    return [entry(person(seed)) for seed in range(8)]
+
+
+@pytest.mark.parametrize("style", ["CMU", "Kinect", "no names"])
+def test_the_same_motion_of_another_skeleton_and_rate_is_found_first(
+    kept: list[Entry], style: str
+) -> None:
+    for seed in range(8):
+        query = entry(person(seed, frames=240, fps=120, style=style, size=0.01))
+        assert places(query, kept)[0] == seed
+
+
+def test_as_many_are_found_as_are_wanted_and_there(kept: list[Entry]) -> None:
+    assert len(places(kept[0], kept, 3)) == 3
+    assert sorted(places(kept[0], kept, 100)) == [*range(8)]
+    assert places(kept[0], [], 5) == []
+    assert places(kept[0], kept[:1]) == [0]
+
+
+@pytest.mark.parametrize(
+    "clip", [person(0, frames=1), person(0, frames=2), person(0, frames=40, still=True)]
+)
+def test_one_frame_and_what_is_still_can_be_asked_for_and_found(
+    kept: list[Entry], clip: Clip
+) -> None:
+    query = entry(clip)
+    assert places(query, [*kept, query])[0] == len(kept)
+    assert len(places(query, kept)) == len(kept)
+    assert np.isfinite(
+        [hit.score for hit in find(query, enumerate([one.features for one in kept]))]
+    ).all()
+
+
+def test_a_mirrored_motion_is_found_by_its_mirror_image(kept: list[Entry]) -> None:
+    mirrored = entry_of(standard_motion(person(5)).mirrored())
+    again = entry_of(standard_motion(person(5)).mirrored().mirrored())
+    assert places(again, kept)[0] == 5
+    assert mirrored.signature != again.signature
+
+
+@pytest.mark.parametrize(("start", "end"), [(20, 60), (100, 150)])
+def test_a_stretch_is_found_where_it_is(start: int, end: int) -> None:
+    long = [entry(person(seed, frames=200)) for seed in range(3)]
+    query = entry_of(standard_motion(person(1, frames=200))[start:end])
+    hits = find(query, enumerate(one.features for one in long), 5)
+    assert hits[0].place == 1
+    assert hits[0].start * 30 == pytest.approx(start, abs=4)
+    assert hits[0].end * 30 == pytest.approx(end, abs=4)
+    assert [hit.score for hit in hits] == sorted(hit.score for hit in hits)
+
+
+def test_stretches_of_a_clip_hardly_overlap() -> None:
+    long = entry(person(2, frames=300))
+    query = entry_of(standard_motion(person(2, frames=300))[100:140])
+    hits = find(query, [(0, long.features)], 10)
+    assert len(hits) > 2
+    for i, one in enumerate(hits):
+        for other in hits[:i]:
+            common = min(one.end, other.end) - max(one.start, other.start)
+            assert common <= 0.5 * min(one.end - one.start, other.end - other.start) + 1e-9
+
+
+def test_a_stretch_longer_than_twice_a_clip_is_not_in_it() -> None:
+    short = entry(person(0, frames=20))
+    assert find(entry(person(0, frames=60)), [(0, short.features)]) == []
+
+
+def test_a_record_gives_the_features_back() -> None:
+    motion = standard_motion(person(3, frames=61))
+    read = read_record(record(motion))
+    assert read.shape == (31, SIZE)
+    # Places to half a step of 1/64; velocities at the lower rate only roughly.
+    assert (
+        np.abs(read - features(motion)[::2])[:, [*range(15), *range(30, 35)]].max()
+        <= 1 / 128 + 1e-6
+    )
+
+
+@pytest.mark.parametrize("cut", [0, 3, 4, 20])
+def test_a_damaged_record_is_told(cut: int) -> None:
+    good = record(standard_motion(person(0)))
+    for bad in (good[:cut], b"\xff\xff\xff\xff" + good[4:], b"\1" + good[1:]):
+        with pytest.raises(CorruptError, match="damaged"):
+            read_record(bad)
+
+
+def test_signatures_are_compared_by_squared_distances() -> None:
+    random = np.random.default_rng(0)
+    made = random.integers(-127, 128, (50, BYTES)).astype(np.int8)
+    expected = ((made.astype(int) - made[7].astype(int)) ** 2).sum(axis=1)
+    assert _core.scan_signatures(made[7], made).tolist() == expected.tolist()
+    with pytest.raises(ValueError, match="other sizes"):
+        _core.scan_signatures(made[7, :3].copy(), made)
+
+
+def warped(one: Features, other: Features) -> float:
+    """Align as defined, without care for time."""
+    costs = np.linalg.norm(one[:, None] - other[None], axis=2)
+    best = np.full(costs.shape, np.inf)
+    for i, j in np.ndindex(*costs.shape):
+        before = [2 * costs[i, j]] if i == j == 0 else []
+        before += [best[i - 1, j] + costs[i, j]] if i else []
+        before += [best[i, j - 1] + costs[i, j]] if j else []
+        before += [best[i - 1, j - 1] + 2 * costs[i, j]] if i and j else []
+        best[i, j] = min(before)
+    return float(best[-1, -1] / sum(costs.shape))
+
+
+def test_warping_finds_the_best_alignment_and_ends_early_above_the_limit() -> None:
+    random = np.random.default_rng(1)
+    for frames in ((1, 1), (1, 9), (8, 5), (20, 31)):
+        one, other = (random.normal(size=(n, SIZE)).astype(np.float32) for n in frames)
+        cost = warped(one, other)
+        assert _core.warp(one, other, np.inf) == pytest.approx(cost, rel=1e-5)
+        assert _core.warp(one, other, cost * 1.01) == pytest.approx(cost, rel=1e-5)
+        assert _core.warp(one, other, cost * 0.3) == np.inf
+        assert _core.warp(one, one, 0) == 0
+    with pytest.raises(ValueError, match="other features"):
+        _core.warp(one, other[:, :4].copy(), 1)
