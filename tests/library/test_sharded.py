@@ -18,7 +18,7 @@ from takes import amc_of
 
 import mocapress as mp
 from mocapress.library import schema
-from mocapress.library.sharded import manifest, open_sharded, publishing
+from mocapress.library.sharded import building, manifest, open_sharded, publishing
 from mocapress.library.sharded.executor import executor
 from mocapress.library.sharded.manifest import shard_file
 from mocapress.library.sharded.places import joined, last_values
@@ -139,6 +139,23 @@ def test_equal_files_make_equal_shards(lib: str, raw: Path, tmp_path: Path) -> N
     mocapress("library", "create", url, "--shard-size", 69000)
     assert mocapress("library", "add", url, raw, "-j", 2).exit_code == 0
     assert shards_of(url) == shards_of(lib)
+
+
+def test_a_run_that_was_ended_is_gone_on_with(raw: Path, tmp_path: Path) -> None:
+    whole, ended = f"{tmp_path / 'whole'}/", f"{tmp_path / 'ended'}/"
+    for url in (whole, ended):
+        mocapress("library", "create", url, "--shard-size", 20000)
+    assert mocapress("library", "add", whole, raw).exit_code == 0
+    with open_sharded(ended, "a") as library:
+        first, *_, last = library.plan(str(raw)).tasks
+        library.publish(building.add(last))
+        building.add(first)  # written, but ended before it was published
+        names = [clip.name for clip in library]
+        assert "z.bvh" in names
+        assert "walks/01.amc" not in names
+    assert mocapress("library", "add", ended, raw).exit_code == 0
+    assert shards_of(ended) == shards_of(whole)
+    assert contents(ended) == files(raw)
 
 
 def test_what_others_share_with_a_removed_clip_stays(lib: str, raw: Path) -> None:

@@ -70,6 +70,11 @@ def add_shards(
     if not tasks and not json:
         print(f"{library.url}: {len(there)} unchanged")
     _run(of_job, work, cluster, jobs, json=json, show=show, total=total, debug=debug)
+    library.refresh(manifest.load(library.store))
+    for name in inputs if tasks else ():
+        # Skeletons that no clip has had.
+        for task in library.plan(name, into, codec=codec, model=model, labels=labels).tasks:
+            library.publish(building.add(task))
 
 
 def verify_shards(

@@ -129,7 +129,8 @@ class ShardedLibrary(ShardedReading):
         A task has the files of about a shard, in the order of their names. Which files go together
         does not depend on what is in the library; but those that are there already, of the same
         size and time, are left out. ``building.add`` does a task, anywhere; ``publish`` adds what
-        it made.
+        it made. Skeletons come with the clips that have them; those that no clip has had are a task
+        once there is no other.
         """
         store, files = _listed(source)
         checked = checked_codec(codec, model)
@@ -138,7 +139,8 @@ class ShardedLibrary(ShardedReading):
         known = self._files()
         tasks: list[Adding] = []
         there: list[str] = []
-        for group in _groups(files, self.manifest.shard_bytes * _RAW):
+        clips = [file for file in files if file not in skeletons]
+        for group in _groups(clips, self.manifest.shard_bytes * _RAW):
             left = [file for file in group if _is_new(file, into, known, skeletons)]
             there += [_inside(into, file.name) for file in group if file not in left]
             folders = {PurePosixPath(file.name).parent for file in left}
@@ -146,6 +148,11 @@ class ShardedLibrary(ShardedReading):
             own = self.store, store, left, near, into, checked, model, tuple(labels)
             if left:
                 tasks.append(Adding(*own, self.manifest.shard_bytes))
+        alone = [file for file in skeletons if _is_new(file, into, known, skeletons)]
+        there += [_inside(into, file.name) for file in skeletons if file not in alone]
+        if alone and not tasks:
+            own = self.store, store, alone, skeletons, into, checked, model, tuple(labels)
+            tasks.append(Adding(*own, self.manifest.shard_bytes))
         return Plan(tasks, there)
 
     def publish(self, made: Made) -> None:

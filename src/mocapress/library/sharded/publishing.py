@@ -17,8 +17,7 @@ def with_added(store: Store, made: Made) -> Change:
     """Add what was made; it takes the place of what has the same names."""
 
     def change(before: Manifest) -> Manifest | None:
-        # Several shards may have the same companion; one is enough.
-        new = [*{(row["kind"], row["name"]): row for row in made.rows}.values()]
+        new = _without_equal(made.rows, before)
         names = {kind: _names(new, kind) for kind in {row["kind"] for row in new}}
         old = [row for kind, own in names.items() for row in _found(before, kind, own)]
         same = {(row["kind"], row["name"], row["shard"], row["id"]) for row in old}
@@ -35,6 +34,25 @@ def with_added(store: Store, made: Made) -> Change:
         return _joined(before, rest, [*freed, Made(made.shards, rows)])
 
     return change
+
+
+def _without_equal(rows: Iterable[dict[str, Any]], before: Manifest) -> list[dict[str, Any]]:
+    """Take out companions and models that another shard has, too.
+
+    Which one counts must not depend on which task ended first.
+    """
+    chosen: dict[tuple[str, str], dict[str, Any]] = {}
+    others = [*rows]
+    own = {kind: _names(others, kind) for kind in (COMPANION, MODEL)}
+    old = [row for kind, names in own.items() for row in _found(before, kind, names)]
+    for row in [*old, *others]:
+        key = row["kind"], row["name"]
+        seen = chosen.get(key, row)
+        equal = all(seen.get(what) == row.get(what) for what in ("sha256", "modified", "size"))
+        if row["kind"] == CLIP or not equal or row["shard"] <= seen["shard"]:
+            chosen[key] = row
+    kept = {id(row) for row in old}
+    return [row for row in chosen.values() if id(row) not in kept]
 
 
 def with_removed(store: Store, clips: Collection[str]) -> Change:
