@@ -44,7 +44,12 @@ class Hit(NamedTuple):
 
 
 def rank(
-    query: Entry, signatures: Sequence[bytes], features: Callable[[int], bytes], top: int = 20
+    query: Entry,
+    signatures: Sequence[bytes],
+    features: Callable[[int], bytes],
+    top: int = 20,
+    *,
+    mirrored: Entry | None = None,
 ) -> list[Hit]:
     """Find the clips that are most like a query.
 
@@ -61,6 +66,8 @@ def rank(
         Gives the record of a clip by its place; asked for candidates only.
     top
         How many are wanted at most.
+    mirrored
+        The query's mirror image, if clips may be like the one or the other.
 
     Raises
     ------
@@ -70,14 +77,17 @@ def rank(
     """
     if not signatures or top < 1:
         return []
+    queries = [query] if mirrored is None else [query, mirrored]
     kept = np.frombuffer(b"".join(signatures), np.int8).reshape(len(signatures), BYTES)
-    near = _core.scan_signatures(np.frombuffer(query.signature, np.int8), kept)
+    near = np.min(
+        [_core.scan_signatures(np.frombuffer(one.signature, np.int8), kept) for one in queries],
+        axis=0,
+    )
     most = min(max(_CANDIDATES, 5 * top), len(kept))
     chosen = np.argsort(near, kind="stable")[:most]
-    apart = np.sqrt(near[chosen].astype(np.float64))
     records = [read_record(features(int(place))) for place in chosen]
-    aligned = _alignments(read_record(query.features), records)
-    scores = apart / _SIGNED + aligned / _ALIGNED
+    aligned = np.min([_alignments(read_record(one.features), records) for one in queries], axis=0)
+    scores = np.sqrt(near[chosen]) / _SIGNED + aligned / _ALIGNED
     best = np.argsort(scores, kind="stable")[:_FIRST]
     candidates = np.ascontiguousarray(kept[chosen])
     theirs = [np.sqrt(_core.scan_signatures(candidates[i], candidates)) for i in best]
