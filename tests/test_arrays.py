@@ -1,11 +1,14 @@
 """Arrays for Zarr: the codec of numcodecs."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import mocapress as mp
 
 numcodecs = pytest.importorskip("numcodecs")
+zarr = pytest.importorskip("zarr")
 
 
 @pytest.mark.parametrize("shape", [(0, 3), (1, 1), (5, 0), (700, 12), (40,), (0,)])
@@ -37,3 +40,21 @@ def test_other_arrays_are_refused() -> None:
         numcodecs.get_codec({"id": "mocapress_exact", "level": 10})
     with pytest.raises(mp.CorruptError):
         codec.decode(b"no mcz")
+
+
+def test_zarr_stores_and_reads_with_it(tmp_path: Path) -> None:
+    values = np.random.default_rng(1).normal(size=(900, 12)).round(3)
+    codec = numcodecs.get_codec({"id": "mocapress_exact", "level": 1})
+    array = zarr.create_array(
+        tmp_path / "clips.zarr",
+        shape=values.shape,
+        chunks=(400, 12),
+        dtype="f8",
+        zarr_format=2,
+        compressors=codec,
+    )
+    array[:] = values
+    again = zarr.open_array(tmp_path / "clips.zarr", mode="r")
+    assert np.array_equal(again[:], values)
+    stored = sum(path.stat().st_size for path in (tmp_path / "clips.zarr").iterdir())
+    assert stored < values.nbytes / 3

@@ -1,6 +1,10 @@
 // Python's view of search/search.hpp.
 #include "search/search.hpp"
 
+#include <nanobind/stl/pair.h>
+
+#include <utility>
+
 #include "python/bindings.hpp"
 
 namespace mocapress {
@@ -34,14 +38,15 @@ float bound_warp(const Features& one, const Features& other, float limit) {
   return warp(frames_of(one), frames_of(other), limit);
 }
 
-nb::tuple bound_find_stretches(const Features& wanted, const Features& motion) {
+std::pair<Given<float>, Given<std::int32_t>> bound_find_stretches(const Features& wanted,
+                                                                  const Features& motion) {
   check_alike(wanted, motion);
   Matches matches;
   {
     const nb::gil_scoped_release release;
     matches = find_stretches(frames_of(wanted), frames_of(motion));
   }
-  return nb::make_tuple(give(std::move(matches.costs)), give(std::move(matches.starts)));
+  return {give(std::move(matches.costs)), give(std::move(matches.starts))};
 }
 
 }  // namespace

@@ -131,7 +131,7 @@ def find(query: Entry, features: Iterable[tuple[int, bytes]], top: int = 20) -> 
     return sorted(hits, key=lambda hit: hit.score)[:top]
 
 
-def _apart(costs: Array, starts: NDArray[np.int32], top: int) -> list[tuple[int, int]]:
+def _apart(costs: Features, starts: NDArray[np.int32], top: int) -> list[tuple[int, int]]:
     """Give the best stretches that hardly overlap, as first and last frames, the best first."""
     found: list[tuple[int, int]] = []
     left = np.where(np.isfinite(costs), costs, np.inf)
