@@ -115,13 +115,13 @@ class Finding(Reading):
         return clusters(self, count)
 
     def duplicates(self, alike: float = ALIKE) -> list[Group]:
-        """Find takes that are nearly the same: copies at other rates or in other formats, retakes.
+        """Find takes that are nearly the same: copies at other rates or in other formats.
 
         Parameters
         ----------
         alike
-            The mean distance of aligned frames up to which two takes count as one; that of two
-            repetitions of a motion by one person is usually larger.
+            The mean distance of aligned frames up to which two takes count as one. Copies are below
+            0.1; from 0.2 on, repetitions of a walk by one person count as one, too.
 
         Returns
         -------

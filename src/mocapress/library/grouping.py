@@ -26,7 +26,7 @@ _NEAREST = 10
 """Clips of the nearest signatures, which are compared in time to see whether they are the same."""
 _COVERED = 0.8
 """Part of the longer of two takes that the shorter has to be like."""
-ALIKE = 0.2
+ALIKE = 0.1
 """Mean distance of frames up to which two takes are nearly the same, unless another is given."""
 
 

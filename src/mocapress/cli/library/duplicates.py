@@ -12,12 +12,17 @@ def duplicates(
     file: File,
     alike: Annotated[
         float,
-        typer.Option("--alike", min=0.0, help="Mean distance up to which two takes count as one."),
-    ] = 0.2,
+        typer.Option(
+            "--alike",
+            min=0.0,
+            help="Mean distance up to which two takes count as one; from 0.2 on, repetitions of a "
+            "walk by one person do.",
+        ),
+    ] = 0.1,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Find takes that are nearly the same: copies at other rates or in other formats, retakes."""
+    """Find takes that are nearly the same: copies at other rates or in other formats."""
     import json as jsonlib
 
     with opened(file, debug=debug) as library:
