@@ -4,7 +4,7 @@ import { FileError } from "./file_error.js";
 import { readOpened } from "./mcz.js";
 
 const APPLICATION_ID = 0x4d435a4c;
-const VERSION = 2;
+const VERSION = 3;
 const TABLES = ["clips", "chunks", "runs", "texts", "skeletons", "labels", "models"];
 const [JOURNAL, NOT_WAL] = [18, 1]; // where the header says that there is a write-ahead log
 
