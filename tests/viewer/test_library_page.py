@@ -1,6 +1,7 @@
 """A library on the page: its list, its clips, and what the server gives of it."""
 
 import json
+import re
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -68,7 +69,8 @@ def served(browser: Browser, path: Path, size: tuple[int, int] = LAPTOP) -> Iter
     with ServedLibrary(path) as library, visited(browser, library, size) as visit:
         visit.until("document.querySelectorAll('.clips [role=option]').length > 0")
         yield visit
-    assert {url.split("/")[0] for url in visit.asked} <= {"", "catalogue", "clips"}
+    known = {"", "catalogue", "clips", "similar"}
+    assert {url.split("/")[0] for url in visit.asked} <= known
 
 
 @contextmanager
@@ -183,6 +185,51 @@ def test_a_dropped_library_is_read_by_sqlite(browser: Browser, path: Path, sampl
         assert visit.page.locator(".notice").count() == 0
     assert sum("sqlite" in url for url in visit.asked) == 2
     assert not any(url.startswith(("clips", "catalogue")) for url in visit.asked)
+
+
+def test_a_stretch_is_marked_and_found(browser: Browser, path: Path) -> None:
+    with served(browser, path) as visit:
+        plays(visit, AMC, 2751)
+        button = visit.page.locator("#similar")
+        button.click()
+        visit.until("document.querySelector('#library output').textContent.includes('like cmu/')")
+        assert sorted(listed(visit)) == sorted(["<b>free.bvh", f"bank/{BVH}", "cut"])
+        visit.page.locator("#library output button").click()
+        assert len(listed(visit)) == 4
+        visit.seek(400)
+        visit.page.keyboard.press("m")
+        visit.seek(639)
+        visit.page.keyboard.press("m")
+        assert button.inner_text() == "Find frames 401 to 640"
+        visit.page.keyboard.press("s")
+        visit.until("document.querySelector('#library output').textContent.includes('frames 401')")
+        assert listed(visit)[:2] == [f"cmu/{AMC}", "cut"]
+        # The first frame of the cut is the 101st of the take.
+        visit.page.locator(".clips button", has_text="cut").first.click()
+        visit.until("document.querySelector('#frame').textContent.endsWith('/ 800')")
+        visit.until("document.body.dataset.frame >= 290")
+        box = visit.page.locator("#timeline").bounding_box()
+        assert box is not None
+        visit.page.keyboard.down("Shift")
+        visit.page.mouse.move(box["x"] + 0.25 * box["width"], box["y"] + 20)
+        visit.page.mouse.down()
+        visit.page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 20)
+        visit.page.mouse.up()
+        visit.page.keyboard.up("Shift")
+        assert re.fullmatch(r"Find frames (19|20)\d to (39|40)\d", button.inner_text())
+        button.click()
+        visit.until("document.querySelector('#library output').textContent.includes('of cut')")
+
+
+def test_a_clip_without_a_body_is_told_of(browser: Browser, path: Path, samples: Path) -> None:
+    with mp.open_library(path, "a") as library:
+        library.add(samples / "markers.c3d")
+    with served(browser, path) as visit:
+        visit.page.locator(".clips button", has_text="markers").click()
+        visit.until("document.querySelector('#frame').textContent.endsWith('/ 300')")
+        visit.page.locator("#similar").click()
+        visit.until("document.querySelector('.notice')?.textContent.includes('skeleton')")
+        visit.logged.clear()  # the browser's own line about the answer
 
 
 def test_broken_libraries_are_told_of(browser: Browser, path: Path, samples: Path) -> None:

@@ -68,19 +68,45 @@ export class App {
     this.library = library;
     this.libraryPanel.show(library.name, clips);
     this.at("show-library").hidden = false;
+    this.at("library").querySelector(".similar").hidden = !library.similar;
     this.#toggleLibrary(true);
     if (clips.length && !isNarrow()) await this.#openStored(clips[0], "replace");
     else if (!this.lineup.takes.length) document.body.classList.add("empty");
   }
 
-  async #openStored(clip, how) {
+  async #openStored(clip, how, start = 0) {
     this.libraryPanel.mark(clip.id);
     if (isNarrow()) this.#toggleLibrary(false);
     this.asked = clip;
     const { library } = this;
     const isWanted = () => how === "add" || this.asked === clip;
     const shown = await this.#read(how, (begun) => library.read(clip, begun), isWanted);
+    if (shown && start) this.player.seek(start);
     if (shown) this.player.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+  }
+
+  /** List what is like the clip that was opened last, or like the stretch that is marked. */
+  async #findSimilar() {
+    const { library, asked, timeline } = this;
+    if (!library?.similar || !asked) return;
+    const { stretch } = timeline;
+    document.body.classList.add("reading");
+    const { hits, errors } = await library.similar(asked, stretch);
+    document.body.classList.remove("reading");
+    this.notices.show(errors);
+    if (errors.length) return;
+    const frames = stretch ? `frames ${stretch[0] + 1} to ${stretch[1]} of ` : "";
+    this.libraryPanel.showHits(`${frames}${asked.name}`, hits);
+    this.libraryPanel.mark(asked.id);
+    this.#toggleLibrary(true);
+  }
+
+  #showMark() {
+    const { stretch, begun } = this.timeline;
+    this.at("similar").textContent = stretch
+      ? `Find frames ${stretch[0] + 1} to ${stretch[1]}`
+      : "Find similar clips";
+    this.at("mark").textContent = begun === null ? "Mark" : `Mark from ${begun + 1} to here`;
   }
 
   /** Show what is read, of long clips the beginning while the rest is read; whether there is any. */
@@ -115,6 +141,7 @@ export class App {
     const { lineup } = this;
     document.body.classList.remove("empty");
     lineup.set(takes);
+    this.timeline.mark();
     this.player.measure(lineup.longest.frames, lineup.longest.frameTime);
     this.inspector.show(lineup.comparison ? takes : takes.slice(0, 1), lineup.colours);
     this.#arrange();
@@ -191,6 +218,8 @@ export class App {
       "close-inspector": () => this.#toggleInspector(false),
       "show-library": () => this.#toggleLibrary(),
       "close-library": () => this.#toggleLibrary(false),
+      similar: () => this.#findSimilar(),
+      mark: () => this.timeline.markHere(),
       theme: () =>
         this.#setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"),
       help: () => this.#toggleHelp(),
@@ -207,9 +236,10 @@ export class App {
     at("speed").addEventListener("change", () => player.setSpeed(Number(at("speed").value)));
     player.addEventListener("change", () => this.#changed());
     this.inspector.addEventListener("choose", () => this.#changed());
-    this.libraryPanel.addEventListener("choose", ({ detail: { clip, how } }) =>
-      this.#openStored(clip, how),
+    this.libraryPanel.addEventListener("choose", ({ detail: { clip, how, start } }) =>
+      this.#openStored(clip, how, start),
     );
+    this.timeline.addEventListener("mark", () => this.#showMark());
     const parts = { veil: at("veil"), replace: at("replace-files"), add: at("add-files") };
     acceptFiles(parts, (files, how) => this.openFiles(files, how));
     const bindings = this.#bindings();
@@ -259,6 +289,13 @@ export class App {
         act: () => this.#toggleInspector(),
       },
       { keys: ["l"], label: "L", text: "list of the library", act: () => this.#toggleLibrary() },
+      {
+        keys: ["m"],
+        label: "M",
+        text: "mark a stretch from here, then to here; or drag with Shift",
+        act: () => this.timeline.markHere(),
+      },
+      { keys: ["s"], label: "S", text: "find what is similar", act: () => this.#findSimilar() },
       { keys: ["d"], label: "D", text: "dark or light", act: () => this.at("theme").click() },
       { keys: ["?"], label: "?", text: "this list", act: () => this.#toggleHelp() },
     ];

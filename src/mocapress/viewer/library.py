@@ -11,17 +11,21 @@ from types import TracebackType
 from mocapress.api.loading import load_opened
 from mocapress.errors import MocapressError, UnsupportedError
 from mocapress.library import open_library
-from mocapress.library.clips import StoredClip
+from mocapress.library.clips import StoredClip, by_id
 from mocapress.library.opened import OpenedClip
 from mocapress.library.reading import Reading
 from mocapress.viewer import embed
 from mocapress.viewer.server import Answer
 
 _CLIP = re.compile(r"/clips/([0-9]{1,18})")
+_SIMILAR = re.compile(r"/similar/([0-9]{1,18})(?:/([0-9]{1,12})-([0-9]{1,12}))?")
 
 
 class ServedLibrary(AbstractContextManager["ServedLibrary"]):
     """What a server gives of a library: ``/catalogue`` as JSON, and ``/clips/ID`` as ``.mcz``.
+
+    ``/similar/ID`` gives the clips that are like one, as JSON, and ``/similar/ID/A-B`` the
+    stretches that are like its frames from A to before B.
 
     One thread reads, whoever asks: each has a connection of its own to the database, and a server
     begins a thread for each question.
@@ -60,13 +64,21 @@ class ServedLibrary(AbstractContextManager["ServedLibrary"]):
 
     def answer(self, path: str) -> Answer | None:
         """Give what there is by a path; what is wrong with it is an answer, too."""
-        found = _CLIP.fullmatch(path)
-        if not found and path != "/catalogue":
+        found, like = _CLIP.fullmatch(path), _SIMILAR.fullmatch(path)
+        if not found and not like and path != "/catalogue":
             return None
         try:
             if found:
                 return Answer(self._reader.submit(self._clip, int(found[1])).result())
-            return Answer(self._reader.submit(self._catalogue).result(), "application/json")
+            if like:
+                clip, first, last = (
+                    None if number is None else int(number) for number in like.groups()
+                )
+                frames = None if first is None else slice(first, last)
+                answer = self._reader.submit(self._similar, clip or 0, frames)
+            else:
+                answer = self._reader.submit(self._catalogue)
+            return Answer(answer.result(), "application/json")
         except (MocapressError, OSError, MemoryError) as error:
             text = str(error) or type(error).__name__
             return Answer(text.encode(), "text/plain; charset=utf-8", HTTPStatus.CONFLICT)
@@ -74,6 +86,20 @@ class ServedLibrary(AbstractContextManager["ServedLibrary"]):
     def _catalogue(self) -> bytes:
         clips = [_facts(clip) for clip in self._library.clips() if clip.frames]
         return json.dumps({"clips": clips}, separators=(",", ":")).encode()
+
+    def _similar(self, number: int, frames: slice | None) -> bytes:
+        with self._library.db.reading() as connection:
+            name = by_id(self._library, connection, number).name
+        hits = [
+            {
+                "id": self._library[hit.name].id,
+                "start": hit.start,
+                "seconds": hit.seconds,
+                "score": hit.score,
+            }
+            for hit in self._library.search(name, frames=frames, within=frames is not None)
+        ]
+        return json.dumps({"hits": hits}, separators=(",", ":")).encode()
 
     def _clip(self, number: int) -> bytes:
         return playable(self._library, number, strict=self._strict)

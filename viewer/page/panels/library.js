@@ -11,6 +11,12 @@ const AT_ONCE = 200; // rows that are made before the user asks for more
  * @property {number|null} seconds null where the source does not say its rate
  * @property {string|null} skeleton
  * @property {string[]} labels
+ *
+ * @typedef {Object} Hit what is like a clip
+ * @property {number} id of a stored clip
+ * @property {number} start its first frame that is alike
+ * @property {[number, number]} seconds from where to where
+ * @property {number} score the smaller, the more alike
  */
 
 /** The list of a library's clips: filtered by what is typed and chosen, a click opens one. */
@@ -72,6 +78,22 @@ export class LibraryPanel extends EventTarget {
     this.#append(found);
   }
 
+  /**
+   * List what was found instead of all clips, until a filter is used.
+   *
+   * @param {string} what it is like
+   * @param {Hit[]} hits
+   */
+  showHits(what, hits) {
+    const byId = new Map(this.clips.map((clip) => [clip.id, clip]));
+    const known = hits.filter(({ id }) => byId.has(id));
+    const all = element("button", { className: "link" }, "all clips");
+    all.addEventListener("click", () => this.#filter());
+    this.count.replaceChildren(`${known.length} like ${what} · `, all);
+    this.list.replaceChildren(...known.map((hit) => this.#row(byId.get(hit.id), hit)));
+    this.list.scrollTop = 0;
+  }
+
   #append(clips) {
     this.list.append(...clips.slice(0, AT_ONCE).map((clip) => this.#row(clip)));
     const rest = clips.slice(AT_ONCE);
@@ -84,19 +106,19 @@ export class LibraryPanel extends EventTarget {
     this.list.append(more);
   }
 
-  #row(clip) {
+  #row(clip, hit) {
     const folder = clip.name.slice(0, clip.name.lastIndexOf("/") + 1);
     const name = element("b", {}, clip.name.slice(folder.length));
     const row = element(
       "button",
       { role: "option", title: `${clip.name} (with Shift: beside the clips shown)` },
       element("span", {}, folder ? element("i", {}, folder) : "", name),
-      element("small", {}, factsOf(clip)),
+      element("small", {}, hit ? placeOf(hit, clip) : factsOf(clip)),
     );
     row.dataset.id = String(clip.id);
     this.#markRow(row);
     row.addEventListener("click", ({ shiftKey }) => {
-      const detail = { clip, how: shiftKey ? "add" : "replace" };
+      const detail = { clip, how: shiftKey ? "add" : "replace", start: hit?.start ?? 0 };
       this.dispatchEvent(new CustomEvent("choose", { detail }));
     });
     return row;
@@ -106,6 +128,11 @@ export class LibraryPanel extends EventTarget {
 function factsOf({ frames, seconds, skeleton, labels }) {
   const length = seconds === null ? "" : `${seconds.toFixed(seconds < 10 ? 2 : 1)} s`;
   return [`${frames} frames`, length, skeleton ?? "", ...labels].filter(Boolean).join(" · ");
+}
+
+function placeOf({ seconds, score }, { labels }) {
+  const [from, to] = seconds.map((second) => second.toFixed(2));
+  return [`${from} to ${to} s`, `score ${score.toFixed(2)}`, ...labels].join(" · ");
 }
 
 function wordsOf({ name, format, skeleton, labels }) {

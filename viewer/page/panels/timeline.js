@@ -1,13 +1,14 @@
 import { rangeOf, short, trace } from "./curve.js";
 import { element, fittedContext, themeColour } from "./element.js";
 
-/** The plot over time at the foot of the page; to drag over it is to scrub. */
-export class Timeline {
+/** The plot over time at the foot of the page; to drag is to scrub, and with Shift to mark a stretch. */
+export class Timeline extends EventTarget {
   /**
    * @param {HTMLElement} slider holds the canvas
    * @param {import("../state/player.js").Player} player
    */
   constructor(slider, player) {
+    super();
     this.slider = slider;
     this.player = player;
     this.canvas = slider.querySelector("canvas");
@@ -15,6 +16,9 @@ export class Timeline {
     slider.append(this.tip);
     this.curves = [];
     this.label = "";
+    this.stretch = null;
+    this.begun = null; // the frame from which a stretch is being marked
+    this.from = null; // the same, while it is dragged
     this.#listen();
     new ResizeObserver(() => this.#redraw()).observe(this.canvas);
     player.addEventListener("change", () => this.draw());
@@ -32,11 +36,41 @@ export class Timeline {
     this.#redraw();
   }
 
+  /**
+   * Mark a stretch; less than two frames are none.
+   *
+   * @param {number} [first] frame
+   * @param {number} [last] frame, in any order
+   */
+  mark(first = 0, last = first) {
+    const ends = [Math.round(Math.min(first, last)), Math.round(Math.max(first, last)) + 1];
+    this.stretch = ends[1] - ends[0] < 2 ? null : ends;
+    this.begun = null;
+    this.draw();
+    this.dispatchEvent(new Event("mark"));
+  }
+
+  /** Mark from the frame that is shown; when asked again, to the one that is shown then. */
+  markHere() {
+    const { frame } = this.player;
+    if (this.begun !== null && this.begun !== frame) return this.mark(this.begun, frame);
+    this.mark();
+    this.begun = frame;
+    this.dispatchEvent(new Event("mark"));
+  }
+
   draw() {
     const { player } = this;
     if (!this.curvesDrawn) this.#drawCurves();
     const { context, width, height } = fittedContext(this.canvas);
     if (this.curvesDrawn.width) context.drawImage(this.curvesDrawn, 0, 0, width, height);
+    if (this.stretch) {
+      const [from, to] = this.stretch.map((frame) => this.#xOf(Math.min(frame, player.frames - 1), width));
+      context.globalAlpha = 0.2;
+      context.fillStyle = themeColour("--accent");
+      context.fillRect(from, 0, to - from, height);
+      context.globalAlpha = 1;
+    }
     const x = this.#xOf(player.frame, width);
     context.fillStyle = themeColour("--ink");
     context.fillRect(x - 0.75, 0, 1.5, height);
@@ -92,12 +126,17 @@ export class Timeline {
     };
     slider.addEventListener("pointerdown", (event) => {
       slider.setPointerCapture(event.pointerId);
-      this.resume = player.playing;
+      this.resume = player.playing && !event.shiftKey;
+      this.from = event.shiftKey ? frameOf(event) : null;
+      if (event.shiftKey) this.mark();
       player.play(false);
       player.seek(frameOf(event));
     });
     slider.addEventListener("pointermove", (event) => {
-      if (slider.hasPointerCapture(event.pointerId)) player.seek(frameOf(event));
+      if (slider.hasPointerCapture(event.pointerId)) {
+        if (this.from !== null) this.mark(this.from, frameOf(event));
+        player.seek(frameOf(event));
+      }
       this.#showTip(Math.round(frameOf(event)));
     });
     slider.addEventListener("pointerup", (event) => {

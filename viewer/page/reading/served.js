@@ -27,6 +27,18 @@ export class ServedLibrary {
     const file = { name: `${name}.mcz`, bytes: new Uint8Array(await response.arrayBuffer()) };
     return named(await this.reader.files([file], (read) => begun(named(read))));
   }
+
+  /**
+   * Find what is like a clip, or like a stretch of it.
+   *
+   * @param {import("../panels/library.js").StoredClip} clip
+   * @param {[number, number]|null} stretch the first frame, and the one behind the last
+   * @returns {Promise<{hits: import("../panels/library.js").Hit[], errors: string[]}>}
+   */
+  async similar({ id }, stretch) {
+    const { response, errors } = await ask(`similar/${id}${stretch ? `/${stretch.join("-")}` : ""}`);
+    return { hits: response ? (await response.json()).hits : [], errors };
+  }
 }
 
 /** Ask the server; an error is what it says, or that it is gone. */
