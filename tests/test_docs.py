@@ -83,7 +83,7 @@ def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     shutil.copy(ROOT / "samples/freebvh.bvh", tmp_path / "clips")
     monkeypatch.chdir(tmp_path)
     commands = re.findall(r"^\$ mocapress (.*?)(?:  #.*)?$", README, re.MULTILINE)
-    assert len(commands) == 15
+    assert len(commands) == 16
     for command in commands:
         if command.startswith("decompress"):
             Path("walk.amc").rename("original.amc")
@@ -114,6 +114,23 @@ def test_the_guide_to_the_command_line_runs(
         assert result.exit_code == 0, (command, result.output)
     restored = tmp_path / "back/freebvh.bvh"
     assert restored.read_bytes() == (ROOT / "samples/freebvh.bvh").read_bytes()
+
+
+def test_the_guide_to_search_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for folder, name in (("clips", "mocapbank"), ("more", "freebvh")):
+        (tmp_path / folder).mkdir()
+        shutil.copy(ROOT / f"samples/{name}.bvh", tmp_path / folder)
+    for suffix in ("amc", "asf"):
+        shutil.copy(ROOT / f"samples/cmu_01_01.{suffix}", tmp_path / f"walk.{suffix}")
+    monkeypatch.chdir(tmp_path)
+    guide = (ROOT / "docs/guide/search.md").read_text()
+    commands = re.findall(r"^\$ mocapress (.*?)(?:  +#.*)?$", guide, re.MULTILINE)
+    assert len(commands) > 7
+    for command in commands:
+        result = CliRunner().invoke(app, command.split())
+        assert result.exit_code == 0, (command, result.output)
+    assert Path("hits.png").stat().st_size > 1000
+    exec("\n".join(re.findall(r"```python\n(.*?)```", guide, re.DOTALL)), {})
 
 
 def test_every_codec_is_in_the_readme_and_the_format() -> None:

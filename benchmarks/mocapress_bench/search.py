@@ -15,6 +15,7 @@ from mocapress_bench import search_rivals as rivals
 from mocapress_bench.search_bodies import Bodies, Seen, of_bones, of_joints
 from mocapress_bench.search_data import Take, labels_of
 from mocapress_bench.search_measures import confusion, measures, summary
+from mocapress_bench.search_own import own_search, own_signatures
 from mocapress_bench.search_rivals import Index
 
 Array = NDArray[np.float64]
@@ -79,6 +80,8 @@ def _seen(
 
 
 METHODS: dict[str, Method] = {
+    "mocapress": own_search,
+    "mocapress, signatures alone": own_signatures,
     "QSSD as published": Dictionaries(published=True),
     "QSSD as published, scalar products of quaternions": Dictionaries(published=True, dots=True),
     "K-SVD as published, components": Dictionaries(components=True),
@@ -143,7 +146,10 @@ def measure(name: str, method: Method, takes: Sequence[Take], seeds: int) -> Mea
         row["mirrored"] = row["mirrored, option"] = None
         if index.mirrored is not None:
             other = np.array([index.mirrored(i) for i in range(len(takes))])
-            for told, ranks in (("", other), (", option", np.minimum(ranked, other))):
+            both = np.minimum(ranked, other)
+            if index.either is not None:
+                both = np.array([index.either(i) for i in range(len(takes))])
+            for told, ranks in (("", other), (", option", both)):
                 row["mirrored" + told] = measures(ranks, labels, actors)["true positives"]
         row["ms a clip"] = 1000 * (made - start) / len(takes)
         row["ms a query"] = 1000 * (asked - made) / len(takes)

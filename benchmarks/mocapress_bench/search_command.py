@@ -109,9 +109,17 @@ def _stretches(
     seeds: int,
     show: Callable[[str], None],
 ) -> Iterator[dict[str, Any]]:
-    from mocapress_bench.search_stretches import FINDERS, joined, labelled, measure, measure_labels
+    from mocapress_bench.search_own import own_stretches
+    from mocapress_bench.search_stretches import (
+        joined,
+        labelled,
+        match_webs,
+        measure,
+        measure_labels,
+    )
 
-    named = {name: finder for name, finder in FINDERS.items() if name in names}
+    finders = {"mocapress": own_stretches, "match webs (Kovar 2004)": match_webs}
+    named = {name: finder for name, finder in finders.items() if name in names}
     skeletons = sorted(corpus.rglob("*.asf")) if corpus is not None else []
     for name, finder in named.items():
         show(f"stretches: {name}")

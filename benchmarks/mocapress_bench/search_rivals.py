@@ -31,6 +31,8 @@ class Index:
     """Kept of a clip, on average."""
     mirrored: Callable[[int], Array] | None = None
     """The distances of the clip with left and right exchanged, where a method can tell them."""
+    either: Callable[[int], Array] | None = None
+    """The distances of that or of its mirror image; without it, the smaller one of each clip."""
 
 
 def weighted_pca(bodies: Bodies, seed: int) -> Index:  # noqa: ARG001

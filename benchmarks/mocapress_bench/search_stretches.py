@@ -119,9 +119,6 @@ def match_webs(longs: Sequence[Long]) -> Finder:
     return find
 
 
-FINDERS: dict[str, Callable[[Sequence[Long]], Finder]] = {"match webs (Kovar 2004)": match_webs}
-
-
 def measure(
     finder: Callable[[Sequence[Long]], Finder],
     queries: Sequence[Take],

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from mocapress.api import compress, decompress, encoder, load, read, verify, write, writer
     from mocapress.codecs import Model, codec
     from mocapress.container.diffma_json import to_json
-    from mocapress.library import Library, StoredClip, open_library
+    from mocapress.library import Library, SearchHit, StoredClip, open_library
     from mocapress.models import load_model, save_model, train
     from mocapress.motion import Clip, Column, Joint, NumberFormat, Skeleton, Stream
     from mocapress.motion.building import (
@@ -72,6 +72,7 @@ __all__ = [
     "MotionWarning",
     "NumberFormat",
     "ParameterError",
+    "SearchHit",
     "Segments",
     "Skeleton",
     "StoredClip",
@@ -148,7 +149,7 @@ _LAZY = {
         ),
         "mocapress.motion.markers",
     ),
-    **dict.fromkeys(("Library", "StoredClip", "open_library"), "mocapress.library"),
+    **dict.fromkeys(("Library", "SearchHit", "StoredClip", "open_library"), "mocapress.library"),
     **dict.fromkeys(("load_model", "save_model", "train"), "mocapress.models"),
 }
 

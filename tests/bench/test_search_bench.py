@@ -141,11 +141,11 @@ def test_the_command_ranks_by_all_methods(cuts: Path, tmp_path: Path) -> None:
     assert [row["method"] for row in found["HDM05"]] == list(METHODS)
     by = {row["method"]: row for row in found["HDM05"]}
     assert by["match webs (Kovar 2004)"]["true positives"] == 100
+    assert by["mocapress"]["true positives"] > 90
     assert by["QSSD of bones"]["true positives"] > 60
     assert by["QSSD"]["bytes"] > 0
-    (stretches,) = found["stretches"]
-    assert stretches["recall at R"] > 90
-    assert stretches["IoU"] > 0.8
+    assert [row["method"] for row in found["stretches"]] == ["mocapress", "match webs (Kovar 2004)"]
+    assert all(row["recall at R"] > 80 and row["IoU"] > 0.7 for row in found["stretches"])
     assert np.sum(found["confusion"]["QSSD of bones"]["per cent"], axis=1) == pytest.approx(
         100, abs=0.1
     )

@@ -220,8 +220,9 @@ def test_a_library_of_version_1_takes_it_over(library: Library, files: dict[str,
     path = library.path
     library.close()
     with sqlite3.connect(path) as connection:
-        connection.execute("DROP TABLE needs")
-        connection.execute("DELETE FROM migrations WHERE version = 2")
+        for table in ("needs", "signatures", "features"):
+            connection.execute(f"DROP TABLE {table}")
+        connection.execute("DELETE FROM migrations WHERE version > 1")
         connection.execute("PRAGMA user_version = 1")
     connection.close()
     with open_library(path) as again:

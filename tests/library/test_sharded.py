@@ -46,7 +46,7 @@ def raw(tmp_path: Path, samples: Path, take: Take) -> Path:
 def lib(tmp_path: Path, raw: Path) -> str:
     """Give a library of these files in two shards."""
     url = f"{tmp_path / 'lib'}/"
-    assert mocapress("library", "create", url, "--shard-size", 69000).exit_code == 0
+    assert mocapress("library", "create", url, "--shard-size", 75000).exit_code == 0
     done = mocapress("library", "add", url, raw)
     assert done.exit_code == 0, done.output
     return url
@@ -136,7 +136,7 @@ def test_only_what_is_new_is_added(lib: str, raw: Path, take: Take) -> None:
 
 def test_equal_files_make_equal_shards(lib: str, raw: Path, tmp_path: Path) -> None:
     url = f"{tmp_path / 'again'}/"
-    mocapress("library", "create", url, "--shard-size", 69000)
+    mocapress("library", "create", url, "--shard-size", 75000)
     assert mocapress("library", "add", url, raw, "-j", 2).exit_code == 0
     assert shards_of(url) == shards_of(lib)
 
@@ -310,6 +310,61 @@ def test_a_fork_reads_on_its_own(lib: str, raw: Path) -> None:
         wanted = [(raw / f"walks/0{n}.amc").read_bytes() for n in (1, 2, 1)]
         assert found == wanted
         assert library.read_bytes("walks/01.amc") == wanted[0]
+
+
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [
+        ("index_version", None),
+        ("index_version", -(2**63)),
+        ("signature", b"short"),
+        ("features_size", -1),
+        ("features_size", None),
+        ("features_places", [1]),
+        ("features_places", [0, 100, 0]),
+        ("features_checksum", None),
+    ],
+)
+def test_a_forged_index_is_not_used(tmp_path: Path, samples: Path, column: str, value: Any) -> None:
+    url = f"{tmp_path / 'lib'}/"
+    with mp.open_library(url, "a") as library:
+        library.add(samples / "freebvh.bvh")
+        rows = library.manifest.rows.to_pylist()  # type: ignore[attr-defined]
+        forged = replace(
+            library.manifest,  # type: ignore[attr-defined]
+            rows=manifest.table_of([row | {column: value} for row in rows]),
+        )
+    max(Path(url, "manifest").iterdir()).write_bytes(forged.data)
+    done = mocapress("search", url, samples / "freebvh.bvh")
+    assert done.exit_code in (0, 1)
+    assert "defect" not in done.stderr
+    assert "freebvh.bvh" in (done.stderr if done.exit_code else done.stdout)
+
+
+def test_a_search_reads_no_motion(tmp_path: Path, samples: Path) -> None:
+    pytest.importorskip("pyarrow")
+    url = f"{tmp_path / 'lib'}/"
+    with mp.open_library(url, "a") as library:
+        for name in ("mocapbank.bvh", "freebvh.bvh"):
+            library.add(samples / name, codec="exact:level=1")
+        library.add(mp.read(samples / "mocapbank.bvh")[200:], "later", index=False)
+        with pytest.raises(mp.UnsupportedError, match="index of a sharded library"):
+            library.reindex()
+    one = tmp_path / "one.mocapdb"
+    with mp.open_library(one, "a") as library:
+        for name in ("mocapbank.bvh", "freebvh.bvh"):
+            library.add(samples / name, codec="exact:level=1")
+    query = mp.read(samples / "mocapbank.bvh")[100:200]
+    with mp.open_library(url, "a") as library, mp.open_library(one) as expected:
+        assert library.lacking() == 1
+        assert library.search(query, within=True)[0].name == "mocapbank.bvh"  # "later" is read
+        library.remove("later")
+        assert library.lacking() == 0
+        for within, mirror in ((True, False), (False, False), (False, True)):
+            found = library.search(query, within=within, mirror=mirror)
+            assert found == expected.search(query, within=within, mirror=mirror)
+        count = library.db.connection.execute("SELECT count(*) FROM chunks").fetchone()[0]
+        assert count == 0
 
 
 def test_a_process_that_dies_is_told(lib: str) -> None:

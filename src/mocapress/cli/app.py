@@ -15,6 +15,7 @@ from mocapress.cli.library import app as library
 from mocapress.cli.list_codecs import list_codecs
 from mocapress.cli.list_files import list_files
 from mocapress.cli.options import Debug
+from mocapress.cli.search import search
 from mocapress.cli.stats import stats
 from mocapress.cli.train import train
 from mocapress.cli.verify import verify
@@ -56,7 +57,8 @@ def options(
     _ = version, debug
 
 
-for _command in (compress, decompress, verify, train, info, convert, cat, compare, stats, view):
+_OF_FILES = (compress, decompress, verify, train, info, convert, cat, compare, stats, view, search)
+for _command in _OF_FILES:
     app.command()(_command)
 app.command("list")(list_files)
 app.command("codecs")(list_codecs)

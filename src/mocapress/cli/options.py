@@ -69,6 +69,15 @@ Asf = Annotated[
         "--asf", help="Skeleton of the AMC files; by default the ASF beside each.", metavar="FILE"
     ),
 ]
+Joints = Annotated[
+    Path | None,
+    typer.Option(
+        "--joints",
+        help="JSON object that names the joints of a skeleton that are not found otherwise, e.g. "
+        '{"left_knee": "LKnee"}.',
+        metavar="FILE",
+    ),
+]
 Models = Annotated[
     list[Path] | None,
     typer.Option(

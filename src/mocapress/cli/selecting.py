@@ -18,6 +18,12 @@ class Seconds:
     start: float
     end: float | None
 
+    def frames(self, frame_time: float) -> slice:
+        """Give the frames in it."""
+        first = round(self.start / frame_time)
+        last = None if self.end is None else max(round(self.end / frame_time), first)
+        return slice(first, last)
+
 
 def _frames(text: str) -> slice:
     """Read ``a:b``; as in Python, ends may be missing, and negative ones count from the last."""

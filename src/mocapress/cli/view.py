@@ -95,7 +95,7 @@ def view(
     if export:
         print(f"{export}: {len(document.encode())} bytes, {_exactness(stated)}")
     else:
-        _serve(document, port, browser=browser, more=nothing)
+        serve(document, port, browser=browser, more=nothing)
 
 
 def _found(paths: list[Path]) -> list[Path]:
@@ -130,7 +130,7 @@ def _serve_library(
     try:
         with ServedLibrary(library, strict=strict) as served:
             document = page.document([], served.name, served=True, library=served.name)
-            _serve(document, port, browser=browser, more=served.answer)
+            serve(document, port, browser=browser, more=served.answer)
     except (MocapressError, OSError) as error:
         if debug:
             raise
@@ -138,13 +138,14 @@ def _serve_library(
         raise typer.Exit(1) from error
 
 
-def _serve(
+def serve(
     document: str,
     port: int,
     *,
     browser: bool,
     more: "Callable[[str], Answer | None]",
 ) -> None:
+    """Serve a page until Ctrl-C."""
     import webbrowser
 
     from mocapress.cli.batch import usage

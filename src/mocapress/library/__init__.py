@@ -7,12 +7,14 @@ if TYPE_CHECKING:
     from mocapress.library.checking import Fault
     from mocapress.library.clips import StoredClip
     from mocapress.library.library import Library, open_library
+    from mocapress.library.searching import SearchHit
 
-__all__ = ["Fault", "Library", "StoredClip", "open_library"]
+__all__ = ["Fault", "Library", "SearchHit", "StoredClip", "open_library"]
 
 # Loaded when they are needed: a list of clips takes neither NumPy nor codecs.
 _LAZY = {
     "Fault": "mocapress.library.checking",
+    "SearchHit": "mocapress.library.searching",
     "StoredClip": "mocapress.library.clips",
     **dict.fromkeys(("Library", "open_library"), "mocapress.library.library"),
 }

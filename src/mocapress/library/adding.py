@@ -13,7 +13,7 @@ from mocapress.container import Companion, Mcz, pack
 from mocapress.container.head import Head, split_parts
 from mocapress.container.original import write_problems
 from mocapress.errors import VerificationError
-from mocapress.library import names, rows
+from mocapress.library import index, names, rows
 from mocapress.library.coding import Coded, Coder
 from mocapress.library.opened import OpenedClip
 from mocapress.library.removing import remove_clips
@@ -74,6 +74,8 @@ class Adder:
     coder: Coder
     overwrite: bool = False
     """Whether clips are replaced by others of their names."""
+    indexed: bool = True
+    """Whether they can be searched for at once."""
 
     def file(
         self,
@@ -161,6 +163,7 @@ class Adder:
             return unchanged
         db, known = self.coder.db, self.coder.known
         beside = extra.beside()
+        entry = index.made_of(made.clip) if self.indexed and made.clip else None
         with db.writing() as connection:
             old = names.find(connection, name)
             if old is not None and not self.overwrite:
@@ -189,6 +192,8 @@ class Adder:
                 clip = self._insert(connection, made, name, extra, beside, labels)
                 if made.runs and not self._comes_back(clip, data):
                     raise VerificationError(f"{name} does not come back; nothing was written")
+            if entry is not None:
+                index.write(connection, clip, entry)
         return Added(
             clip,
             ADDED if old is None else REPLACED,

@@ -11,6 +11,7 @@ from mocapress.container import unpack
 from mocapress.container.limits import most_companions
 from mocapress.errors import CorruptError, LimitError, MissingModelError, MocapressError
 from mocapress.library.database import Database
+from mocapress.library.index import damaged as damaged_index
 from mocapress.library.opened import OpenedClip
 from mocapress.library.rows import RUN_COLUMNS, Connection, Run, hash_of
 from mocapress.library.stored import StoredMcz
@@ -108,6 +109,7 @@ def check(db: Database) -> Iterator[list[Fault]]:
                 faults += _of_others(connection, clip, names, damaged, own)
             yield faults
         yield [*_companions(connection)]
+        yield [*_index(connection, names)]
 
 
 @contextmanager
@@ -191,3 +193,11 @@ def _companions(connection: Connection) -> Iterator[Fault]:
                 yield Fault(name, "the companion is damaged")
     except (sqlite3.DatabaseError, CorruptError) as error:
         yield Fault("", f"companions cannot be read ({error})")
+
+
+def _index(connection: Connection, names: dict[int, str]) -> Iterator[Fault]:
+    try:
+        for clip, what in damaged_index(connection):
+            yield Fault(names.get(clip, ""), what)
+    except sqlite3.DatabaseError as error:
+        yield Fault("", f"the index for search cannot be read ({error})")

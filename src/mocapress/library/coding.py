@@ -42,6 +42,8 @@ class Coded:
     """Those that decoding may need."""
     newest: int = 0
     """The newest clip of the library when it was coded."""
+    clip: Clip | None = None
+    """All its frames; None where it has none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +82,9 @@ class Coder:
                 problems = [str(problem.error(source.name)) for problem in parts.problems]
                 why = "; ".join(filter(None, (failure, *problems))) or None
                 mcz = open_mcz(Source(blob))
-                return Coded(mcz, kind, clip.values.shape, runs, rest, why, self._models, newest)
+                return Coded(
+                    mcz, kind, clip.values.shape, runs, rest, why, self._models, newest, clip
+                )
         made = compress_parts(
             source, parts, self.codec, with_skeleton=True, model=self.model, warning=warning
         )
@@ -88,14 +92,14 @@ class Coder:
         shape = clip.values.shape if clip else (0, 0)
         if not self.codec.lossless or mcz.head is None or not clip or not clip.values.size:
             hashes = None
-        return Coded(mcz, kind, shape, (), hashes, made.warning, self._models, newest)
+        return Coded(mcz, kind, shape, (), hashes, made.warning, self._models, newest, clip)
 
     def clip(self, clip: Clip) -> Coded:
         """Code a clip."""
         made = compress_clip(clip, self.codec, model=self.model)
         mcz = made.mcz or open_mcz(Source(made.blob))
         hashes = self._anchors(clip, ())
-        return Coded(mcz, None, clip.values.shape, (), hashes, None, self._models)
+        return Coded(mcz, None, clip.values.shape, (), hashes, None, self._models, clip=clip)
 
     def mcz(self, source: Source) -> Coded:
         """Take a ``.mcz`` as it is, once all of it is decoded and checked."""
@@ -116,7 +120,9 @@ class Coder:
         hashes = anchors(first) if kept_exact else None
         models = [opened.model(index) for index in range(len(opened.streams))]
         kept = tuple(model for model in models if model is not None)
-        return Coded(mcz, kind, first.shape, (), hashes, None, kept)
+        stream = opened.streams[0]
+        clip = Clip.of(first, stream.columns, stream.frame_time, mcz.head.skeleton)
+        return Coded(mcz, kind, first.shape, (), hashes, None, kept, clip=clip)
 
     @property
     def _models(self) -> tuple[Model, ...]:

@@ -3,6 +3,7 @@
 from typing import Any
 
 from mocapress import codecs
+from mocapress.library import index
 from mocapress.library.library import Library
 
 _COUNTS = """
@@ -26,6 +27,7 @@ def describe_library(library: Library) -> dict[str, Any]:
                 "SELECT coalesce(format, 'clip'), count(*) FROM clips GROUP BY 1 ORDER BY 1"
             )
         )
+        searchable, index_bytes = index.size_of(connection)
     size = library.stored_bytes
     return {
         "clips": clips,
@@ -42,6 +44,8 @@ def describe_library(library: Library) -> dict[str, Any]:
         "texts": texts or None,
         "companions": companions,
         "models": models or None,
+        "searchable": searchable,
+        "index_bytes": index_bytes,
         "labels": ", ".join(f"{name} ({n})" for name, n in library.labels.items()) or None,
     }
 

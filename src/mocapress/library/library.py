@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from mocapress.api.clips import checked_codec
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
@@ -22,14 +21,13 @@ from mocapress.library.adding import (
 from mocapress.library.clips import StoredClip, by_id
 from mocapress.library.coding import Coder
 from mocapress.library.database import WAIT, Database
-from mocapress.library.reading import APPEND, READ, Reading, Which
+from mocapress.library.finding import Finding
+from mocapress.library.reading import APPEND, READ, Which
 from mocapress.library.removing import recompress, remove_clips
+from mocapress.library.searching import Reindexed, reindex
 from mocapress.models import Place, load_model
 from mocapress.motion import Clip, Skeleton
 from mocapress.source import LIMIT, Named, Source
-
-if TYPE_CHECKING:
-    pass
 
 
 def open_library(
@@ -90,7 +88,7 @@ def is_sharded(path: str | Path) -> bool:
     return "://" in text or text.endswith("/") or Path(text).is_dir()
 
 
-class Library(Reading):
+class Library(Finding):
     """A library, open; see ``open_library``. Threads may share it, and so may forked processes.
 
     Its clips are in the order of their names: ``len(lib)``, ``lib[0]``, ``lib[10:20]``, and a loop
@@ -108,6 +106,7 @@ class Library(Reading):
         labels: Sequence[str] = (),
         notes: Mapping[str, str] | None = None,
         replace: bool = False,
+        index: bool = True,
     ) -> StoredClip:
         """Add a file or a clip, in one transaction; it was decoded and compared before.
 
@@ -125,6 +124,8 @@ class Library(Reading):
             Words by which the clip is to be found.
         replace
             Whether a clip of this name that is another is replaced.
+        index
+            Whether what ``search`` compares is made and kept at once.
 
         Returns
         -------
@@ -141,7 +142,7 @@ class Library(Reading):
         """
         if model is not None and not isinstance(model, Model):
             model = load_model(model)
-        adder = self.adder(codec, model, overwrite=replace)
+        adder = self.adder(codec, model, overwrite=replace, indexed=index)
         if isinstance(source, Clip):
             if not (name or source.name):
                 raise ParameterError("the clip has no name", expected="name=...")
@@ -214,10 +215,11 @@ class Library(Reading):
         *,
         overwrite: bool,
         models: Sequence[Place] = (),
+        indexed: bool = True,
     ) -> Adder:
         """Give what adds clips with a codec; threads may share it."""
         coder = self._coder(codec, model)
-        return Adder(replace(coder, models=[*self.models, *models]), overwrite)
+        return Adder(replace(coder, models=[*self.models, *models]), overwrite, indexed)
 
     def _coder(self, codec: str | Codec, model: Model | None) -> Coder:
         return Coder(self.db, self._known, checked_codec(codec, model), model, self.models)
@@ -269,6 +271,22 @@ class Library(Reading):
         done = recompress_together(self._coder(codec, None), [self._id(clip) for clip in clips])
         with self.db.reading() as connection:
             return {by_id(self, connection, clip).name: sizes for clip, sizes in done.items()}
+
+    def reindex(self, joints: Mapping[str, str] | None = None) -> Reindexed:
+        """Make anew what ``search`` compares, of all clips; each is written when it is made.
+
+        Parameters
+        ----------
+        joints
+            As in ``search``, for the clips whose skeletons have all of these names.
+
+        Returns
+        -------
+        Reindexed
+            How many clips can be searched, how many have no body, and what failed.
+
+        """
+        return reindex(self, joints)
 
     def label(self, clip: Which, *labels: str, remove: Sequence[str] = ()) -> None:
         """Give a clip labels, and take others away."""

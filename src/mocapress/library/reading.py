@@ -56,6 +56,9 @@ class Reading:
     def fetch(self, clips: Iterable[int], companions: Collection[int] = ()) -> None:
         """See that what these need is here; of a library that is one file everything is."""
 
+    def fetch_features(self, clips: Iterable[int]) -> None:
+        """See that what search compares of these is here; see ``fetch``."""
+
     def __enter__(self) -> Self:
         return self
 
@@ -128,13 +131,17 @@ class Reading:
 
     def _in_order(self) -> list[int]:
         """Give all ids in the order of names, kept until the library changes."""
-        connection = self.db.connection
-        version: int = connection.execute("PRAGMA data_version").fetchone()[0]
-        state = version, connection.total_changes
+        connection, state = self.db.connection, self.state()
         if self._ids is None or self._ids[0] != state:
             rows = connection.execute("SELECT id FROM clips ORDER BY name").fetchall()
             self._ids = state, [clip for (clip,) in rows]
         return self._ids[1]
+
+    def state(self) -> tuple[int, int]:
+        """Give what is another when the library has changed."""
+        connection = self.db.connection
+        version: int = connection.execute("PRAGMA data_version").fetchone()[0]
+        return version, connection.total_changes
 
     def clips(
         self,

@@ -78,7 +78,20 @@ CREATE TABLE needs(clip INTEGER NOT NULL REFERENCES clips, digest BLOB NOT NULL,
 CREATE INDEX needs_by_source ON needs(source);
 """
 
-MIGRATIONS = [Migration("create", _statements(_TABLES)), Migration("needs", _statements(_NEEDS))]
+_SEARCH = """
+CREATE TABLE signatures(clip INTEGER PRIMARY KEY REFERENCES clips ON DELETE CASCADE,
+    version INTEGER NOT NULL, signature BLOB NOT NULL, checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE features(clip INTEGER PRIMARY KEY REFERENCES clips ON DELETE CASCADE,
+    checksum INTEGER NOT NULL, rows BLOB NOT NULL) STRICT;
+"""
+
+SEARCH = 3
+"""The first version of the schema that has an index for search."""
+MIGRATIONS = [
+    Migration("create", _statements(_TABLES)),
+    Migration("needs", _statements(_NEEDS)),
+    Migration("search", _statements(_SEARCH)),
+]
 """Version n of the schema is what the first n of them make."""
 
 

@@ -1,6 +1,6 @@
-"""A contact sheet: figures of a few moments of each clip of a library."""
+"""Contact sheets: figures of a few moments of each of some clips."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,6 +19,16 @@ _LONG = 2**12
 """Clips of more frames are not decoded whole."""
 
 
+class Tile(NamedTuple):
+    """A clip, or a stretch of one, as it is drawn."""
+
+    name: str
+    facts: str
+    """What is said below the name."""
+    moments: Callable[[int], tuple[Clip, list[int]]]
+    """Gives a clip with so many moments in it, and where they are."""
+
+
 class Sheet(NamedTuple):
     """A picture, and what could not be drawn on it."""
 
@@ -29,12 +39,17 @@ class Sheet(NamedTuple):
 def draw_sheet(
     library: Library, clips: Sequence[StoredClip], *, columns: int = 3, count: int = 6
 ) -> Sheet:
+    """Draw clips of a library, each with its name and what it is; see ``draw``."""
+    return draw([tile_of(library, clip) for clip in clips], columns=columns, count=count)
+
+
+def draw(tiles: Sequence[Tile], *, columns: int = 3, count: int = 6) -> Sheet:
     """Draw clips in rows, each with its name and some moments.
 
     Parameters
     ----------
-    library, clips
-        What to draw, at least one clip.
+    tiles
+        What to draw, at least one.
     columns
         How many clips there are in a row.
     count
@@ -49,48 +64,56 @@ def draw_sheet(
     figures.pillow()
     from PIL import Image, ImageDraw, ImageFont
 
-    columns = min(columns, len(clips))
+    columns = min(columns, len(tiles))
     width, height = (side + _GAP for side in _CELL)
-    lines = -(-len(clips) // columns)
+    lines = -(-len(tiles) // columns)
     size = columns * width + _GAP, lines * height + _GAP
     picture = Image.new("RGB", size, figures.GROUND)
-    draw = ImageDraw.Draw(picture)
+    pen = ImageDraw.Draw(picture)
     font = ImageFont.load_default(_TEXT)
     failures = []
-    for place, clip in enumerate(clips):
+    for place, tile in enumerate(tiles):
         left = _GAP + place % columns * width
         top = _GAP + place // columns * height
         try:
-            made, at = _moments(library, clip, count)
+            made, at = tile.moments(count)
             picture.paste(figures.strip(made, at, (_CELL[0], _FIGURES)), (left, top))
         except MocapressError as error:
-            error.file = error.file or clip.name
+            error.file = error.file or tile.name
             failures.append(error)
-            draw.text((left, top + _FIGURES // 2), error.what, figures.MUTED, font)
-        _caption(draw, font, (left, top + _FIGURES + 4), clip)
+            pen.text((left, top + _FIGURES // 2), error.what, figures.MUTED, font)
+        _caption(pen, font, (left, top + _FIGURES + 4), tile)
     return Sheet(picture, failures)
 
 
-def _moments(library: Library, clip: StoredClip, count: int) -> tuple[Clip, list[int]]:
-    """Give a clip with the moments in it, and where they are."""
-    at = figures.moments(clip.frames, count)
+def tile_of(
+    library: Library, clip: StoredClip, frames: slice | None = None, facts: str | None = None
+) -> Tile:
+    """Give the tile of a clip of a library, or of some frames of it."""
+    seconds = "" if clip.duration is None else f", {clip.duration:.1f} s"
+    said = "  ".join([f"{clip.frames} frames{seconds}", *clip.labels]) if facts is None else facts
+    rows = range(clip.frames)[frames or slice(None)]
+    return Tile(clip.name, said, lambda count: _moments(library, clip, rows, count))
+
+
+def _moments(library: Library, clip: StoredClip, rows: range, count: int) -> tuple[Clip, list[int]]:
+    """Give a clip with moments of some rows in it, and where they are."""
+    at = [rows[moment] for moment in figures.moments(len(rows), count)]
     if clip.frames <= _LONG or not at:
         return library.load(clip, strict=False), at or [0]
     parts = [library.load(clip, slice(frame, frame + 1), strict=False) for frame in at]
-    rows = np.concatenate([part.values for part in parts])
-    return parts[0].with_frames(rows, parts[0].frame_time), list(range(len(rows)))
+    values = np.concatenate([part.values for part in parts])
+    return parts[0].with_frames(values, parts[0].frame_time), list(range(len(values)))
 
 
-def _caption(draw: object, font: object, at: tuple[int, int], clip: StoredClip) -> None:
+def _caption(pen: object, font: object, at: tuple[int, int], tile: Tile) -> None:
     from PIL import ImageDraw, ImageFont
 
-    assert isinstance(draw, ImageDraw.ImageDraw)
+    assert isinstance(pen, ImageDraw.ImageDraw)
     assert isinstance(font, ImageFont.FreeTypeFont | ImageFont.ImageFont)
-    seconds = "" if clip.duration is None else f", {clip.duration:.1f} s"
-    facts = "  ".join([f"{clip.frames} frames{seconds}", *clip.labels])
-    name = clip.name.encode(errors="surrogateescape").decode(errors="replace")
-    for text, colour, down in ((name, figures.INK, 0), (facts, figures.MUTED, _TEXT + 3)):
-        while text and draw.textlength(text, font) > _CELL[0]:
+    name = tile.name.encode(errors="surrogateescape").decode(errors="replace")
+    for text, colour, down in ((name, figures.INK, 0), (tile.facts, figures.MUTED, _TEXT + 3)):
+        while text and pen.textlength(text, font) > _CELL[0]:
             # Of a name the end tells most.
             text = f"…{text[2:]}" if down == 0 else f"{text[:-2]}…"
-        draw.text((at[0], at[1] + down), text, colour, font)
+        pen.text((at[0], at[1] + down), text, colour, font)

@@ -5,7 +5,9 @@ import typer
 from mocapress.cli.library.add import add
 from mocapress.cli.library.cat import cat
 from mocapress.cli.library.check import check
+from mocapress.cli.library.cluster import cluster
 from mocapress.cli.library.create import create
+from mocapress.cli.library.duplicates import duplicates
 from mocapress.cli.library.export import export
 from mocapress.cli.library.extract import extract
 from mocapress.cli.library.import_mcz import import_mcz
@@ -14,6 +16,7 @@ from mocapress.cli.library.label import label
 from mocapress.cli.library.list_clips import list_clips
 from mocapress.cli.library.patterns import patterns
 from mocapress.cli.library.recompress import recompress
+from mocapress.cli.library.reindex import reindex
 from mocapress.cli.library.remove import remove
 from mocapress.cli.library.sheet import sheet
 from mocapress.cli.library.verify import verify
@@ -26,8 +29,10 @@ app = typer.Typer(
 app.command()(create)
 app.command()(add)
 app.command("list")(list_clips)
-for _command in (info, extract, cat, remove, label, verify, recompress, patterns, export):
+for _command in (info, extract, cat, remove, label, verify, recompress, reindex, patterns, export):
     app.command()(_command)
 app.command("import")(import_mcz)
 app.command()(check)
 app.command()(sheet)
+app.command()(cluster)
+app.command()(duplicates)

@@ -34,6 +34,9 @@ def add(
         list[str] | None,
         typer.Option("--label", help="Label for the clips; may be repeated.", metavar="LABEL"),
     ] = None,
+    index: Annotated[
+        bool, typer.Option("--index/--no-index", help="Whether to index clips for search at once.")
+    ] = True,
     cluster: Cluster = None,
     jobs: Jobs = 1,
     json: Json = False,
@@ -67,6 +70,7 @@ def add(
                 codec=made,
                 model=learned,
                 labels=label or [],
+                index=index,
                 cluster=cluster,
                 jobs=jobs,
                 json=json,
@@ -78,7 +82,7 @@ def add(
     say_what_is_left_out(paths, endings())
     with opened(file, "a", debug=debug) as library:
         sharded(library, cluster)
-        adder = library.adder(made, learned, overwrite=True)
+        adder = library.adder(made, learned, overwrite=True, indexed=index)
 
         add_all(
             library,

@@ -30,6 +30,7 @@ def add_shards(
     codec: Codec,
     model: Model | None,
     labels: Sequence[str],
+    index: bool,
     cluster: str | None,
     jobs: int,
     json: bool,
@@ -37,7 +38,10 @@ def add_shards(
 ) -> None:
     """Add files, a shard's worth at a time."""
     assert library is not None
-    plans = [library.plan(name, into, codec=codec, model=model, labels=labels) for name in inputs]
+    plans = [
+        library.plan(name, into, codec=codec, model=model, labels=labels, index=index)
+        for name in inputs
+    ]
     there = [name for plan in plans for name in plan.there]
     if labels and there:
         library.label_all((name for name in there if name in library), labels)

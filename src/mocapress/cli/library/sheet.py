@@ -8,8 +8,6 @@ import typer
 from mocapress.cli.library.opening import File, Label, Patterns, chosen, opened
 from mocapress.cli.options import Debug, Force
 
-_KINDS = {".png": "png", ".jpg": "jpeg", ".jpeg": "jpeg", ".webp": "webp"}
-
 
 def sheet(
     file: File,
@@ -27,16 +25,12 @@ def sheet(
     debug: Debug = False,
 ) -> None:
     """Draw a contact sheet: figures of a few moments of each clip. Needs Pillow."""
-    import io
-
-    from mocapress.cli.batch import usage
+    from mocapress.cli.pictures import check_kind, write_picture
     from mocapress.cli.report import message, say
     from mocapress.library.sheet import draw_sheet
-    from mocapress.storage import check_targets, write_whole
+    from mocapress.storage import check_targets
 
-    kind = _KINDS.get(output.suffix.lower())
-    if kind is None:
-        usage(f"-o {output}: no such kind of picture; expected {', '.join(_KINDS)}")
+    check_kind(output, "-o")
     with opened(file, debug=debug) as library:
         check_targets([output], force=force)
         clips = [clip for clip in chosen(library, patterns, label) if clip.frames]
@@ -45,9 +39,7 @@ def sheet(
             raise typer.Exit(1)
         drawn = [clips[i * len(clips) // most] for i in range(most)] if len(clips) > most else clips
         picture, failures = draw_sheet(library, drawn, columns=columns, count=moments)
-        data = io.BytesIO()
-        picture.save(data, kind)
-        write_whole(output, data.getvalue(), force=force)
+        write_picture(output, picture, force=force)
     for error in failures:
         say(message(error, error.file or ""))
     left = f" of {len(clips)} (--most)" if len(drawn) < len(clips) else ""

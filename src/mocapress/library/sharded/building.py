@@ -55,6 +55,8 @@ class Adding:
     model: Model | None
     labels: Sequence[str]
     shard_bytes: int
+    indexed: bool = True
+    """Whether they can be searched for at once."""
 
     @property
     def size(self) -> int:
@@ -68,7 +70,7 @@ def add(task: Adding) -> Made:
     waiting = list(task.files)
     while waiting:
         with building() as library:
-            adder = library.adder(task.codec, task.model, overwrite=True)
+            adder = library.adder(task.codec, task.model, overwrite=True, indexed=task.indexed)
             full, before = False, made.raw
             while waiting and not full:
                 file = waiting.pop(0)

@@ -10,6 +10,7 @@ from mocapress.container import unpack
 from mocapress.container.limits import UNPACKED
 from mocapress.errors import CorruptError
 from mocapress.library import schema
+from mocapress.library.index import checksum as index_checksum
 from mocapress.library.rows import COLUMNS, Facts, checksum, hash_of
 from mocapress.library.sharded.manifest import COMPANION, MODEL, Manifest
 
@@ -99,6 +100,12 @@ def _insert_clip(
         f"INSERT INTO clips(id, {COLUMNS}, checksum) VALUES({marks})",
         (number, *clip, checksum(clip)),
     )
+    if row["signature"] is not None and row["index_version"] is not None:
+        crc = index_checksum(row["index_version"], row["signature"])
+        connection.execute(
+            "INSERT INTO signatures VALUES(?, ?, ?, ?)",
+            (number, row["index_version"], row["signature"], crc),
+        )
     for label in row["labels"] or ():
         connection.execute("INSERT INTO labels VALUES(?, ?)", (number, label))
     for key, value in row["notes"] or ():

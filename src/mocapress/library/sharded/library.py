@@ -17,6 +17,7 @@ from mocapress.library.checking import Fault
 from mocapress.library.clips import StoredClip, by_id
 from mocapress.library.library import check_label
 from mocapress.library.reading import APPEND, Which
+from mocapress.library.searching import Reindexed
 from mocapress.library.sharded import building, manifest, publishing
 from mocapress.library.sharded.building import Adding, Made, Recoding
 from mocapress.library.sharded.index import SERIAL
@@ -87,6 +88,7 @@ class ShardedLibrary(ShardedReading):
         labels: Sequence[str] = (),
         notes: Mapping[str, str] | None = None,
         replace: bool = False,
+        index: bool = True,
     ) -> StoredClip:
         """Add one file or clip, in a shard of its own; see ``Library.add``. ``plan`` adds many."""
         made = Made()
@@ -99,6 +101,7 @@ class ShardedLibrary(ShardedReading):
                 asf_path=asf_path,
                 labels=labels,
                 notes=notes,
+                index=index,
             )
             old = next(iter(self.clips(clip.name)), None) if clip.name in self else None
             if old is not None and old.sha256 is not None and old.sha256 == clip.sha256:
@@ -123,6 +126,7 @@ class ShardedLibrary(ShardedReading):
         codec: str | Codec = DEFAULT_CODEC,
         model: Model | None = None,
         labels: Sequence[str] = (),
+        index: bool = True,
     ) -> "Plan":
         """Say what adding the motion files below a folder, or one file, takes.
 
@@ -147,7 +151,7 @@ class ShardedLibrary(ShardedReading):
             near = [file for file in skeletons if PurePosixPath(file.name).parent in folders]
             own = self.store, store, left, near, into, checked, model, tuple(labels)
             if left:
-                tasks.append(Adding(*own, self.manifest.shard_bytes))
+                tasks.append(Adding(*own, self.manifest.shard_bytes, index))
         alone = [file for file in skeletons if _is_new(file, into, known, skeletons)]
         there += [_inside(into, file.name) for file in skeletons if file not in alone]
         if alone and not tasks:
@@ -243,6 +247,10 @@ class ShardedLibrary(ShardedReading):
     ) -> dict[str, tuple[int, int]]:
         """Refuse: clips are predicted from those of their shard only; see ``remaking``."""
         raise UnsupportedError("coding clips of several shards together", file=self.url)
+
+    def reindex(self, joints: Mapping[str, str] | None = None) -> Reindexed:  # noqa: ARG002
+        """Refuse: a shard is made with its index; what it lacks is made when it is searched."""
+        raise UnsupportedError("making the index of a sharded library anew", file=self.url)
 
     def _clip(self, which: Which) -> StoredClip:
         with self.db.reading() as connection:

@@ -111,6 +111,11 @@ def schema() -> "pa.Schema":
             ("text_size", pa.int64()),
             ("text_places", places),
             ("chunk_list", pa.binary()),
+            ("index_version", pa.int64()),
+            ("signature", pa.binary()),
+            ("features_size", pa.int64()),
+            ("features_places", places),
+            ("features_checksum", pa.int64()),
         ]
     )
 

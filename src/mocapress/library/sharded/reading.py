@@ -14,7 +14,7 @@ from mocapress.library.library import Library
 from mocapress.library.opened import OpenedClip
 from mocapress.library.reading import READ, Which
 from mocapress.library.sharded import manifest
-from mocapress.library.sharded.index import fill, insert_values, writable
+from mocapress.library.sharded.index import SERIAL, fill, insert_values, writable
 from mocapress.library.sharded.manifest import CLIP, COMPANION, MODEL, Manifest, shard_file
 from mocapress.library.sharded.places import Place as Part
 from mocapress.library.sharded.places import joined
@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 
 REQUESTS = 3
 """For the values of a clip, at most."""
+
+_FEATURES = ("features_size", "features_places", "features_checksum")
+"""Columns that say where the features of a clip are."""
 
 
 class ShardedReading(Library):
@@ -62,6 +65,7 @@ class ShardedReading(Library):
         file = Path(self._folder.name, f"{found.number}.mocapdb")
         self._row, self._models = fill(file, found, self.url)
         self._there: set[tuple[str, int]] = set()
+        self._featured: set[int] = set()
         db = Database(file, writable=False, wait=self.wait, limit=self.limit)
         super().__init__(db, models)
 
@@ -143,6 +147,28 @@ class ShardedReading(Library):
             self.db.connection.execute("COMMIT")
             self.db.connection.execute("BEGIN")
 
+    def fetch_features(self, clips: Iterable[int]) -> None:
+        """Read what search compares of clips, and of all clips of their shards with them."""
+        with self._lock:
+            missing = {clip // SERIAL for clip in clips} - self._featured
+            if not missing:
+                return
+            numbers = [n for kind, n in self._row if kind == CLIP and n // SERIAL in missing]
+            wanted = self.manifest.rows.take([self._row[CLIP, n] for n in numbers])
+            rows = wanted.select(["name", "shard", *_FEATURES]).to_pylist()
+            values = self._read(rows, ("features",))
+            with closing(writable(self.db.path)) as connection:
+                connection.execute("BEGIN")
+                connection.executemany(
+                    "INSERT OR IGNORE INTO features VALUES(?, ?, ?)",
+                    [
+                        (numbers[at], rows[at]["features_checksum"] or 0, value)
+                        for (at, _), value in values.items()
+                    ],
+                )
+                connection.execute("COMMIT")
+            self._featured |= missing
+
     def _with_sources(self, clips: Iterable[int]) -> list[int]:
         """Give clips, and those of which they have or need frames."""
         found: dict[int, None] = {}
@@ -162,11 +188,13 @@ class ShardedReading(Library):
         digests = {digest for row in rows for digest in column[row].as_py() or ()}
         return [self._models[digest] for digest in sorted(digests) if digest in self._models]
 
-    def _read(self, rows: Sequence[dict[str, Any]]) -> dict[tuple[int, str], bytes]:
+    def _read(
+        self, rows: Sequence[dict[str, Any]], values_of: Sequence[str] = ("value", "text")
+    ) -> dict[tuple[int, str], bytes]:
         """Read the values of rows, those of a shard together."""
         of_shard: dict[str, list[tuple[int, str]]] = {}
         for index, row in enumerate(rows):
-            for what in ("value", "text"):
+            for what in values_of:
                 if row[f"{what}_places"]:
                     of_shard.setdefault(row["shard"], []).append((index, what))
         values = {}

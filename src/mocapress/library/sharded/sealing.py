@@ -7,6 +7,7 @@ the chunks of a clip stand in successive pages.
 import hashlib
 import sqlite3
 from contextlib import closing
+from itertools import product
 from mmap import mmap
 from pathlib import Path
 from typing import Any
@@ -84,15 +85,21 @@ def rows_of(db: Database, name: str) -> list[dict[str, Any]]:
         chunks = _sizes(connection, "SELECT clip, length(list) + length(sections) FROM chunks")
         texts = _sizes(connection, "SELECT id, length(packed) FROM texts")
         models = _sizes(connection, "SELECT id, length(file) FROM models")
+        features = _sizes(connection, "SELECT clip, length(rows) FROM features")
         places = {
             table: last_values(connection, db.path, table, sizes)
-            for table, sizes in (("chunks", chunks), ("texts", texts), ("models", models))
+            for table, sizes in (
+                *(("chunks", chunks), ("texts", texts), ("models", models)),
+                ("features", features),
+            )
         }
         rows = []
         for (clip,) in connection.execute("SELECT id FROM clips ORDER BY id").fetchall():
             row = _clip(db, clip) | {"shard": name}
             if clip in chunks:
                 row |= _value(places["chunks"][clip], chunks[clip])
+            if clip in features:
+                row |= _value(places["features"][clip], features[clip], "features")
             rows.append(row | _text(connection, row.pop("text_row"), places["texts"], texts))
         for number, own, kind, size, sha256, modified, text in connection.execute(
             "SELECT id, name, format, size, sha256, modified, text FROM companions ORDER BY id"
@@ -111,8 +118,8 @@ def _sizes(connection: sqlite3.Connection, query: str) -> dict[int, int]:
     return dict(connection.execute(query))
 
 
-def _value(places: list[Place], size: int) -> dict[str, Any]:
-    return {"value_size": size, "value_places": [int(n) for place in places for n in place]}
+def _value(places: list[Place], size: int, what: str = "value") -> dict[str, Any]:
+    return {f"{what}_size": size, f"{what}_places": [int(n) for place in places for n in place]}
 
 
 def _text(
@@ -171,6 +178,12 @@ def _clip(db: Database, clip: int) -> dict[str, Any]:
         "SELECT digest, stream, source, source_first, frames FROM needs WHERE clip = ? ORDER BY 1"
     )
     row["needs"], row["needs_digests"] = [n[1:] for n in needs], [n[0] for n in needs]
+    for version, signature, checksum in several(
+        "SELECT version, signature, features.checksum FROM signatures "
+        "LEFT JOIN features ON features.clip = signatures.clip WHERE signatures.clip = ?"
+    ):
+        row["index_version"], row["signature"] = version, signature
+        row["features_checksum"] = checksum
     row["chunk_list"] = next(iter(several("SELECT list FROM chunks WHERE clip = ?")), (None,))[0]
     return row
 
@@ -179,14 +192,16 @@ def _check(db: Database, rows: list[dict[str, Any]]) -> None:
     """See that what stands at the places is what the tables say."""
     data = mapped(db.path)
     queries = {
-        CLIP: "SELECT list, sections FROM chunks WHERE clip = ?",
-        MODEL: "SELECT file FROM models WHERE id = ?",
+        (CLIP, "value"): "SELECT list, sections FROM chunks WHERE clip = ?",
+        (CLIP, "features"): "SELECT rows FROM features WHERE clip = ?",
+        (MODEL, "value"): "SELECT file FROM models WHERE id = ?",
     }
-    for row in rows:
-        if row.get("value_size") is not None:
-            query = queries[row["kind"]]
+    for row, what in product(rows, ("value", "features")):
+        size = row.get(f"{what}_size")
+        if size is not None:
+            query = queries[row["kind"], what]
             wanted = b"".join(db.connection.execute(query, [row["id"]]).fetchone())
-            if value_of(data, row["value_places"], row["value_size"]) != wanted:
+            if value_of(data, row[f"{what}_places"], size) != wanted:
                 raise VerificationError(f"{row['name']} is not where it should be in the shard")
 
 
