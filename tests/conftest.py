@@ -1,6 +1,7 @@
 """What tests share: the samples, and the corpus where it is."""
 
 import os
+import signal
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,10 @@ from mocapress.codecs.fallback import RAISE_VARIABLE
 from mocapress.library import Library, open_library
 
 SAMPLES = Path(__file__).parents[1] / "samples"
+# A shell that runs the tests in the background has them ignored, and so would what tests start.
+for name in {"SIGINT", "SIGHUP"} & {known.name for known in signal.Signals}:
+    if signal.getsignal(signal.Signals[name]) is signal.SIG_IGN:
+        signal.signal(signal.Signals[name], signal.SIG_DFL)
 # Machines differ in speed: what counts is what holds, not how fast.
 settings.register_profile(
     "mocapress", deadline=None, suppress_health_check=[HealthCheck.too_slow], max_examples=60
