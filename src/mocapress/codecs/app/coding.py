@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from mocapress import _core
 from mocapress.codecs.app.header import pack_header, unpack_header
 from mocapress.codecs.app.parents import parent_columns
+from mocapress.codecs.chunks import check_frames
 from mocapress.codecs.contract import Chunk, Encoded
 from mocapress.errors import CorruptError
 from mocapress.motion import Column, Skeleton, Stream
@@ -97,12 +98,7 @@ class Coding:
 
     def _check_size(self, chunk: Chunk, channels: int) -> None:
         """Refuse what cannot be, before memory is asked for it."""
-        if not 0 < chunk.frames <= self.frames_per_chunk:
-            raise CorruptError(
-                f"APP chunk from frame {chunk.first} has an impossible number of frames",
-                expected=f"1 to {self.frames_per_chunk}",
-                found=str(chunk.frames),
-            )
+        check_frames("APP chunk", chunk, self.frames_per_chunk)
         least = self._index_bytes(chunk.frames, channels) + 1
         if len(chunk.payload) < least:
             raise CorruptError(

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapress.codecs.chunks import check_frames
 from mocapress.codecs.contract import (
     NO_OTHERS,
     Bound,
@@ -158,12 +159,7 @@ class DiffMA(Codec):
         plans = unpack_header(header, len(columns))
         values = []
         for chunk in chunks:
-            if not 0 < chunk.frames <= self.chunk:
-                raise CorruptError(
-                    f"DiffMA chunk from frame {chunk.first} has an impossible number of frames",
-                    expected=f"1 to {self.chunk}",
-                    found=str(chunk.frames),
-                )
+            check_frames("DiffMA chunk", chunk, self.chunk)
             records = unpack_payload(chunk.payload, len(columns), chunk.frames)
             try:
                 values.append(self.coding.decode(records, plans, chunk.frames).T)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
+from mocapress.codecs.chunks import check_frames
 from mocapress.codecs.contract import (
     NO_OTHERS,
     Capabilities,
@@ -162,12 +163,7 @@ class Exact(Codec):
 
     def _check_size(self, chunk: Chunk, coded: int) -> None:
         """Refuse what cannot be, before memory is asked for it."""
-        if not 0 < chunk.frames <= self.chunk:
-            raise CorruptError(
-                f"exact chunk from frame {chunk.first} has an impossible number of frames",
-                expected=f"1 to {self.chunk}",
-                found=str(chunk.frames),
-            )
+        check_frames("exact chunk", chunk, self.chunk)
         # A number costs at least log2(65536 / 65512) bits.
         if coded * chunk.frames > 2**14 * (len(chunk.payload) + 64):
             raise CorruptError(f"exact chunk from frame {chunk.first} is cut off")

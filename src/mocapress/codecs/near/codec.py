@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
+from mocapress.codecs.chunks import decoded_into
 from mocapress.codecs.contract import (
     NO_OTHERS,
     Bound,
@@ -22,7 +23,7 @@ from mocapress.codecs.contract import (
 from mocapress.codecs.near.encoding import Encoder
 from mocapress.codecs.near.goal import Goal, amount, goal_of
 from mocapress.codecs.near.header import unpack_errors
-from mocapress.errors import CorruptError, ParameterError
+from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Skeleton, Stream
 
 _MOST_FRAMES = 1 << 20
@@ -122,22 +123,11 @@ class Near(Codec):
             When header or payload are not what ``encode`` makes with these parameters.
 
         """
-        for chunk in chunks:
-            if not 0 < chunk.frames <= self.chunk:
-                raise CorruptError(
-                    f"chunk of near from frame {chunk.first} has an impossible number of frames",
-                    expected=f"1 to {self.chunk}",
-                    found=str(chunk.frames),
-                )
-        values = np.empty((sum(chunk.frames for chunk in chunks), len(columns)))
-        row = 0
-        for chunk in chunks:
-            try:
-                _core.near_decode(header, chunk.payload, values[row : row + chunk.frames])
-            except ValueError as error:
-                raise CorruptError(f"chunk of near from frame {chunk.first}: {error}") from error
-            row += chunk.frames
-        return values[:stop]
+
+        def decode(payload: bytes, rows: NDArray[np.float64]) -> None:
+            _core.near_decode(header, payload, rows)
+
+        return decoded_into("chunk of near", chunks, len(columns), self.chunk, decode)[:stop]
 
     def largest_errors(self, columns: Sequence[Column]) -> list[float]:
         """Give the error up to which each column may come back; infinite where none was asked."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
+from mocapress.codecs.chunks import decoded_into
 from mocapress.codecs.contract import (
     NO_OTHERS,
     Bound,
@@ -24,7 +25,7 @@ from mocapress.codecs.patterns.clustering import LARGEST, MEAN
 from mocapress.codecs.patterns.encoding import Job, unpack_facts
 from mocapress.codecs.patterns.hierarchy import AUTOMATIC, markers_of
 from mocapress.codecs.patterns.segmentation import DISTANCE, PCA, RATIO
-from mocapress.errors import CorruptError, ParameterError, UnsupportedError
+from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.markers import POINTS, joints_as_points
 from mocapress.motion.units import centimetres_per_unit
@@ -198,24 +199,12 @@ class Patterns(Codec):
             When header, payload or model are not what ``encode`` makes with these parameters.
 
         """
-        for chunk in chunks:
-            if not 0 < chunk.frames <= self.chunk:
-                raise CorruptError(
-                    f"patterns chunk from frame {chunk.first} has an impossible number of frames",
-                    expected=f"1 to {self.chunk}",
-                    found=str(chunk.frames),
-                )
-        values = np.empty((sum(chunk.frames for chunk in chunks), len(columns)))
-        payload = b"" if model is None else model.payload
-        row = 0
-        for chunk in chunks:
-            rows = values[row : row + chunk.frames]
-            try:
-                _core.patterns_decode(chunk.payload, rows, header, payload)
-            except ValueError as error:
-                raise CorruptError(f"patterns chunk from frame {chunk.first}: {error}") from error
-            row += chunk.frames
-        return values[:stop]
+        learned = b"" if model is None else model.payload
+
+        def decode(payload: bytes, rows: NDArray[np.float64]) -> None:
+            _core.patterns_decode(payload, rows, header, learned)
+
+        return decoded_into("patterns chunk", chunks, len(columns), self.chunk, decode)[:stop]
 
     def largest_errors(self, columns: Sequence[Column]) -> list[float]:
         """Give the error up to which each column may come back; infinite where none was asked."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
+from mocapress.codecs.chunks import decoded_into
 from mocapress.codecs.contract import (
     NO_OTHERS,
     Bound,
@@ -22,7 +23,7 @@ from mocapress.codecs.contract import (
 from mocapress.codecs.qssd.body import Body, body_of
 from mocapress.codecs.qssd.decomposition import MOST_ATOMS
 from mocapress.codecs.qssd.training import Training
-from mocapress.errors import CorruptError, ParameterError
+from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.records import Writer
 
@@ -128,24 +129,12 @@ class QSSD(Codec):
             When header, payload or model are not what ``encode`` makes with these parameters.
 
         """
-        for chunk in chunks:
-            if not 0 < chunk.frames <= self.chunk:
-                raise CorruptError(
-                    f"QSSD chunk from frame {chunk.first} has an impossible number of frames",
-                    expected=f"1 to {self.chunk}",
-                    found=str(chunk.frames),
-                )
-        values = np.empty((sum(chunk.frames for chunk in chunks), len(columns)))
-        row = 0
-        for chunk in chunks:
-            rows = values[row : row + chunk.frames]
-            payload = b"" if model is None else model.payload
-            try:
-                _core.qssd_decode(chunk.payload, rows, header, payload)
-            except ValueError as error:
-                raise CorruptError(f"QSSD chunk from frame {chunk.first}: {error}") from error
-            row += chunk.frames
-        return values[:stop]
+        learned = b"" if model is None else model.payload
+
+        def decode(payload: bytes, rows: NDArray[np.float64]) -> None:
+            _core.qssd_decode(payload, rows, header, learned)
+
+        return decoded_into("QSSD chunk", chunks, len(columns), self.chunk, decode)[:stop]
 
     def largest_errors(self, columns: Sequence[Column]) -> list[float]:
         """Give the error up to which each column may come back; infinite where none was asked."""
