@@ -21,7 +21,7 @@ from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.codecs.fallback import first_that_works
 from mocapress.codecs.loss import checked_loss
 from mocapress.container import Companion, Head, MczWriter, Original, is_storable_time, pack
-from mocapress.container.columns import bones_of
+from mocapress.container.columns import bone_names, bones_of
 from mocapress.errors import CorruptError, FormatError, VerificationError
 from mocapress.formats import Split
 from mocapress.formats.layout_record import write_layout
@@ -273,7 +273,7 @@ def motion_file(
     columns, kind = clip.columns, layout.format
     if stored is None:
         columns = columns if skeleton else placed(columns)
-        bones = [bone.name for bone in bones_of(columns) for _ in range(bone.columns)]
+        bones = bone_names(bones_of(columns))
         record = write_layout(layout, References.of(skeleton, bones, clip.frame_time))
     else:
         record, kind = stored.record(), stored.format

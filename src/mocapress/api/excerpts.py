@@ -11,7 +11,7 @@ from mocapress.api.opening import Opened
 from mocapress.api.reading import printed, read_source
 from mocapress.api.restoring import contents, layout_of, own_layout
 from mocapress.container import Original, limits
-from mocapress.container.columns import bones_of
+from mocapress.container.columns import bone_names, bones_of
 from mocapress.errors import UnsupportedError
 from mocapress.formats.layout import Layout
 from mocapress.formats.layout_record import read_layout, write_layout
@@ -85,7 +85,7 @@ def _kept(count: int, frames: slice) -> np.ndarray[tuple[int], np.dtype[np.bool_
 
 def _announcing(layout: Layout, clip: Clip, rows: int) -> Layout:
     """Give the layout with a header for so many rows."""
-    bones = [bone.name for bone in bones_of(clip.columns) for _ in range(bone.columns)]
+    bones = bone_names(bones_of(clip.columns))
     references = References.of(clip.skeleton, bones, clip.frame_time)
     record = write_layout(layout, references)
     most = limits.most_layout(2**62, 2**62)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from mocapress import formats
 from mocapress.api.opening import Opened, Rows
 from mocapress.container import Companion, Damage, Original, StreamHead, diffma_json, limits
+from mocapress.container.columns import bone_names
 from mocapress.errors import CorruptError, UnsupportedError
 from mocapress.formats.contract import StoredLayout
 from mocapress.formats.layout import Layout
@@ -219,5 +220,4 @@ def layout_of(opened: Opened, original: Original, rows: int) -> Layout:
 def references(opened: Opened, stream: StreamHead) -> References:
     """Give what a layout may refer to."""
     skeleton = opened.mcz.head.skeleton if opened.mcz.head else None
-    bones = [bone.name for bone in stream.bones for _ in range(bone.columns)]
-    return References.of(skeleton, bones, stream.frame_time)
+    return References.of(skeleton, bone_names(stream.bones), stream.frame_time)

@@ -1,6 +1,6 @@
 """The columns of a stream as a record: docs/format.md, section "Stream"."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
@@ -127,6 +127,11 @@ def bones_of(columns: Sequence[Column]) -> tuple[Bone, ...]:
     made = _columns_of(bones, kinds, units)
     same = all(a.name == b.name for a, b in zip(made, columns, strict=True))
     return tuple(bones) if same else ()
+
+
+def bone_names(bones: Iterable[Bone]) -> list[str]:
+    """Give the bone of each column."""
+    return [bone.name for bone in bones for _ in range(bone.columns)]
 
 
 def _alike(made: Sequence[Column], columns: Sequence[Column]) -> bool:

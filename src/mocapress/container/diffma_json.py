@@ -11,7 +11,7 @@ from mocapress.codecs import Codec
 from mocapress.codecs.diffma.document import Document, read_document
 from mocapress.codecs.fallback import naming_faults
 from mocapress.codecs.loss import Loss
-from mocapress.container.columns import Columns, bones_of, read_columns, write_columns
+from mocapress.container.columns import Columns, bone_names, bones_of, read_columns, write_columns
 from mocapress.container.limits import most_json, most_json_parts, most_printed
 from mocapress.container.packing import pack, unpack
 from mocapress.errors import (
@@ -250,9 +250,7 @@ def _unpacked(document: Document) -> tuple[Columns, str, bytes]:
 
 def _references(columns: Columns) -> References:
     """Give what the layout refers to: bones alone, as the rest stands in the document as text."""
-    return References.of(
-        None, [bone.name for bone in columns.bones for _ in range(bone.columns)], None
-    )
+    return References.of(None, bone_names(columns.bones), None)
 
 
 def _misfit(what: str, expected: int, found: int) -> FormatError:
