@@ -25,13 +25,22 @@ if TYPE_CHECKING:
     from mocapress.source import Source
 
 
+def _formats(begun: str) -> list[str]:
+    """Give the formats that begin so, for completion in a shell."""
+    from mocapress.formats import writable
+
+    return [of.id for of in writable() if of.id.startswith(begun)]
+
+
 def convert(
     inputs: Inputs,
     output: Output = None,
     to: Annotated[
         str | None,
         typer.Option(
-            "--to", help="Format, e.g. bvh or amc; by default the output's suffix says it."
+            "--to",
+            help="Format, e.g. bvh or amc; by default the output's suffix says it.",
+            autocompletion=_formats,
         ),
     ] = None,
     asf: Asf = None,
