@@ -114,7 +114,7 @@ def _standing(
     """Give (F, J): where the chosen joints stand; what is not finite stands nowhere."""
     if len(places) == 0:
         return np.zeros(chosen.shape[:2], dtype=np.bool_)
-    usable: Frames = np.isfinite(places).all(axis=(1, 2))
+    usable = np.asarray(np.isfinite(places).all(axis=(1, 2)))
     if not usable.any():
         return np.zeros(chosen.shape[:2], dtype=np.bool_)
     size = float(np.quantile(np.ptp(places[usable], axis=1).max(axis=1), 0.95))
