@@ -32,10 +32,11 @@ def turnings_of(
     """
     named = [(column.joint, column.kind) for column in columns]
     found: list[Turning] = []
-    for each in _core.near_turnable(measure.core, named):
-        own = values[:, each[0] : each[0] + 3]
+    for first, *orders in _core.near_turnable(measure.core, named):
+        own = values[:, first : first + 3]
         if (np.abs(own) < _MOST).all() and (own != own[0]).any(axis=0).all():
-            found.append(tuple(each))
+            places, axes, curves, nearest = orders
+            found.append((first, places, axes, curves, nearest))
     if not found or len(values) < 2:
         return []
     moderate = np.where(np.abs(values) < 1e9, values, 0.0)
