@@ -141,6 +141,7 @@ export class Figure {
     this.headEnd = take.bones.find(([, point]) => isHead(point))?.[1] ?? -1;
     this.headMesh.visible = this.headEnd >= 0;
     if (take.clip.markers) return;
+    this.balls.fill(0, 0, take.root);
     take.bones.forEach(([parent, point], i) => {
       take.onStage(0, parent, place);
       from.fromArray(place);
