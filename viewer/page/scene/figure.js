@@ -80,7 +80,8 @@ export class Figure {
     for (let point = 0; point < take.points; point++) {
       let usual = take.isMissing(frame, point) ? MISSING_BALL : this.balls[point];
       if (take.isGone(frame, point)) usual = 0;
-      const radius = this.grown * (point === this.chosen ? CHOSEN_BALL : usual);
+      const isChosen = point === this.chosen && point >= take.root;
+      const radius = this.grown * (isChosen ? CHOSEN_BALL : usual);
       from.fromArray(places, 3 * point);
       this.ballMesh.setMatrixAt(point, matrix.compose(from, turn, size.setScalar(radius)));
     }

@@ -1,5 +1,7 @@
+/** Of a figure on the stage. */
+export const USUAL_HEIGHT = 1.7;
+
 const FRAMES = 240; // that are looked at, spread over the clip
-const USUAL_HEIGHT = 1.7;
 const MANY = 20; // markers among which one may be a stray
 const NEAR_FLOOR = 0.06; // of the figure's size
 const MOST_NEAR = 5; // points that stand on the floor: more of them say no more

@@ -52,6 +52,7 @@ export class Take {
 
   /** Take other bearings: those of the original for what was decoded, or another up axis. */
   standAs(bearings) {
+    if (this.bearings === bearings) return;
     this.bearings = bearings;
     const { up, scale, floor } = bearings;
     const turn = turnUp(up);
@@ -64,9 +65,14 @@ export class Take {
 
   /** Stand with an axis up; without one, with that which seems to be. */
   standUp(up) {
-    const { root, clip } = this;
-    const known = { up, gaps: clip.gaps, root, rest: clip.skeleton && atRest(clip.skeleton) };
-    this.standAs(findBearings(this.positions, this.points, this.jointNames, known));
+    if (up || !this.own) {
+      const { root, clip } = this;
+      const known = { up, gaps: clip.gaps, root, rest: clip.skeleton && atRest(clip.skeleton) };
+      const found = findBearings(this.positions, this.points, this.jointNames, known);
+      if (up) return this.standAs(found);
+      this.own = found;
+    }
+    this.standAs(this.own);
   }
 
   /** Place of a point on the stage, into `out`. */
