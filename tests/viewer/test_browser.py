@@ -157,7 +157,7 @@ def test_a_decoded_clip_is_compared(visit: Visit, samples: Path, tmp_path: Path)
 def test_exact_copies_differ_by_nothing(visit: Visit, samples: Path, tmp_path: Path) -> None:
     same = clip(samples, "freebvh.bvh")
     visit.open(page.document([same, same]), tmp_path)
-    visit.until("document.querySelector('#worst').textContent === '0 units'")
+    visit.until("document.querySelector('#worst').textContent === '0 cm'")
 
 
 def test_clips_stand_in_a_grid(visit: Visit, samples: Path, tmp_path: Path) -> None:

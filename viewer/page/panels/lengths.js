@@ -13,7 +13,7 @@ export function lengthText(take) {
   if (!unit) return (value) => `${short(value)} units`;
   return (value) => {
     const centimetres = value * unit;
-    return centimetres < 0.1 ? `${short(10 * centimetres)} mm` : `${short(centimetres)} cm`;
+    return centimetres && centimetres < 0.1 ? `${short(10 * centimetres)} mm` : `${short(centimetres)} cm`;
   };
 }
 
