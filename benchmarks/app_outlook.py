@@ -84,6 +84,8 @@ def table_of(alphas: Array, weights: Array) -> tuple[float, ...]:
         total = np.bincount(own, counts, ENTRIES)
         sums = np.bincount(own, counts * alphas, ENTRIES)
         centres = np.sort(np.where(total > 0, sums / np.where(total > 0, total, 1), centres))
+    # Where nothing is to be gained from the parent, its step must not disturb at all.
+    centres[np.abs(centres).argmin()] = 0
     return tuple(float(np.float32(centre)) for centre in centres)
 
 

@@ -14,12 +14,15 @@ frames.
 import argparse
 import json
 import multiprocessing
+import os
 import resource
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # two processes for two cores
 
 import numpy as np
 from numpy.typing import NDArray
@@ -153,7 +156,7 @@ def main() -> None:
     told.add_argument("--plot", type=Path)
     told.add_argument("--one", action="store_true", help=argparse.SUPPRESS)
     told.add_argument("sizes", nargs="*", type=float, default=SIZES)
-    given = told.parse_args()
+    given = told.parse_intermixed_args()
     if given.one:
         print(json.dumps(measure(given.folder, given.sizes[0], given.steps)))
         return
