@@ -352,34 +352,34 @@ class Chunk {
 };
 
 // Reads, and counts the bits of each part.
-class Counting : public RangeReading {
+class Counting {
  public:
-  using RangeReading::RangeReading;
+  static constexpr bool kReading = true;
+
+  explicit Counting(ByteView payload) : side_(payload) {}
 
   void enter(Part part) { part_ = static_cast<std::size_t>(part); }
-  bool chance(std::uint32_t zero, bool) {
-    const bool one = RangeReading::chance(zero, false);
-    count(zero, one);
+  bool chance(std::uint32_t zero, bool ignored) {
+    const bool one = side_.chance(zero, ignored);
+    bits_[part_] -= std::log2((one ? 65536 - zero : zero) / 65536.0);
     return one;
   }
-  bool bit(Bit& model, bool) {
+  bool bit(Bit& model, bool ignored) {
     const std::uint32_t zero = model.chance_of_zero();
-    const bool one = RangeReading::bit(model, false);
-    count(zero, one);
+    const bool one = side_.bit(model, ignored);
+    bits_[part_] -= std::log2((one ? 65536 - zero : zero) / 65536.0);
     return one;
   }
-  std::uint64_t raw(int count, std::uint64_t) {
-    bits[part_] += count;
-    return RangeReading::raw(count, 0);
+  std::uint64_t raw(int count, std::uint64_t ignored) {
+    bits_[part_] += count;
+    return side_.raw(count, ignored);
   }
-
-  std::array<double, kParts> bits{};
+  bool sound() const { return side_.sound(); }
+  const std::array<double, kParts>& bits() const { return bits_; }
 
  private:
-  void count(std::uint32_t zero, bool one) {
-    bits[part_] -= std::log2((one ? 65536 - zero : zero) / 65536.0);
-  }
-
+  RangeReading side_;
+  std::array<double, kParts> bits_{};
   std::size_t part_ = 0;
 };
 
@@ -397,7 +397,7 @@ std::array<double, kParts> bits_of(ByteView payload, std::size_t frames, const P
   std::vector<double> values(frames * plan.roles.size());
   Chunk chunk(side, plan, frames, values.data(), nullptr);
   chunk.code();
-  return side.bits;
+  return side.bits();
 }
 
 Bytes encode(const Given& given, std::size_t frames, const Plan& plan) {
