@@ -177,8 +177,8 @@ Plan read_header(ByteView header, std::size_t columns) {
     for (std::size_t t = 0; t < plan.turnings.size(); ++t) {
       plan.turnings[t].nearest_to_zero = (nearest >> t & 1) != 0;
     }
-    std::vector<std::int64_t> exponents;
-    for (const int each : figure.exponents) exponents.push_back(base + each);
+    std::vector<std::int64_t> exponents(figure.exponents.begin(), figure.exponents.end());
+    for (std::int64_t& each : exponents) each += base;
     put_steps(exponents);
     return plan;
   }
