@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from mocapress.errors import (
     FormatError,
+    LimitError,
     MocapressError,
     MotionWarning,
     ParameterError,
@@ -206,6 +207,8 @@ def _made(library: "Finding", clip: int, joints: Mapping[str, str] | None = None
         warnings.simplefilter("ignore", MotionWarning)
         try:
             return index.made_of(library.load(clip, strict=False), joints)
+        except LimitError:
+            raise
         except (FormatError, UnsupportedError):  # no motion, as far as can be read
             return index.NOTHING
 
