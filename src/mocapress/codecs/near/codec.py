@@ -21,10 +21,11 @@ from mocapress.codecs.contract import (
     Others,
 )
 from mocapress.codecs.near.encoding import Encoder
-from mocapress.codecs.near.goal import Goal, amount, goal_of
+from mocapress.codecs.near.goal import Goal, goal_of
 from mocapress.codecs.near.header import unpack_errors
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Skeleton, Stream
+from mocapress.motion.units import amount
 
 _MOST_FRAMES = 1 << 20
 _QUALITIES = range(1, 10)
@@ -55,7 +56,7 @@ class Near(Codec):
     """Where nothing else is asked for: 1 (1 cm of a figure 1.7 m high) to 9 (0.01 cm)."""
     max_error: float = inf
     """Largest error of any value, in the unit of its channel; instead of all others."""
-    chunk: int = 1024
+    chunk: int = 4096
     """Frames that are decoded together."""
 
     def __post_init__(self) -> None:

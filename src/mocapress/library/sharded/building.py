@@ -148,7 +148,7 @@ def _add(task: Adding, file: Listed, library: Library, adder: Adder) -> bool:
         raise CorruptError("not compressed by mocapress", file=file.name)
     if _is_there(task, file, source):
         return False
-    if source.format is not None and source.format.split is None:
+    if source.format is not None and source.format.read_skeleton is not None:
         library.add_companion(source, name, file.modified)
         return True
 
