@@ -106,7 +106,7 @@ def test_a_killed_worker_changes_nothing(
     url = "s3://lab/cluster/"
     create(url)
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
+        n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50
     ) as cluster:
         puts: list[str] = []
 
@@ -161,7 +161,7 @@ def test_archives_are_unpacked_for_workers_elsewhere(
     done = mocapress("library", "create", url, "--shard-size", 6000, "--no-index")
     assert done.exit_code == 0
     with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=2, dashboard_address=None, silence_logs=50
+        n_workers=1, threads_per_worker=2, dashboard_address=":0", silence_logs=50
     ) as cluster:
         where = "--cluster", cluster.scheduler_address
         for source in ("s3://lab/archives/raw.tar.gz", path):
