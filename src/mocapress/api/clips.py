@@ -13,6 +13,7 @@ from mocapress.container import CodedChunk, Head, Mcz, MczWriter, is_storable_ti
 from mocapress.errors import UnsupportedError, VerificationError
 from mocapress.formats.problems import Problem
 from mocapress.motion import Clip
+from mocapress.motion.soundness import refuse_unsound
 from mocapress.source import Source
 
 
@@ -38,6 +39,7 @@ def compress_clip(
     notes: Mapping[str, str] | None = None,
 ) -> Compressed:
     """Compress a clip; see ``compress``. The model is for its first stream."""
+    refuse_unsound(clip)
     made = checked_codec(codec, model)
     skeleton = stored_skeleton(clip)
     heads, chunks = [], []
