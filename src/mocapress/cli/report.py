@@ -1,6 +1,7 @@
 """What a command says of each file: a line or an object, as soon as the file is done."""
 
 import json as jsonlib
+import re
 import sys
 import traceback
 from collections.abc import Callable
@@ -114,23 +115,12 @@ def message(error: Exception, name: str) -> str:
     return text if name in ("", "-") or name in text else f"{name}: {text}"
 
 
-_OPTIONS = {
-    "force=True": "--force",
-    "replace=True": "--replace",
-    "limit=...": "--limit",
-    "fps=...": "--fps",
-    "joints=...": "--joints",
-    "asf_path=...": "--asf",
-    "mp.read and mp.write convert any": "mocapress convert converts any",
-}
-"""What messages of the Python interface speak of, and what that is here."""
+_ARGUMENT = re.compile(r"\b(\w+?)(?:_path)?=(?:True|\.\.\.)")
 
 
 def _as_option(text: str) -> str:
-    """Give a message in which arguments of Python are options of the command line."""
-    for argument, option in _OPTIONS.items():
-        text = text.replace(argument, option)
-    return text
+    """Give a message in which arguments of Python, ``force=True``, are options: ``--force``."""
+    return _ARGUMENT.sub(r"--\1", text)
 
 
 def _json(job: "Job") -> str:
