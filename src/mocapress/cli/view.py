@@ -21,7 +21,7 @@ def view(
         list[str] | None,
         typer.Argument(
             help="Motion files, .mcz, folders, or one library, also the folder or URL of a sharded "
-            "one; given two files, the second is compared with the first."
+            "one; of two files that are alike, the second is compared with the first."
         ),
     ] = None,
     export: Annotated[
