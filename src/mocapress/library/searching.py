@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from mocapress.errors import (
     FormatError,
+    LimitError,
     MocapressError,
     MotionWarning,
     ParameterError,
@@ -29,17 +30,30 @@ _SHARED = 0.5
 
 @dataclass(frozen=True, slots=True)
 class SearchHit:
-    """A clip that was found, or a stretch of one."""
+    """A clip that was found, or a stretch of one.
+
+    Attributes
+    ----------
+    name
+        Of the clip.
+    start
+        The first frame.
+    end
+        Behind the last frame.
+    seconds
+        The same, from the first frame on; of a clip without a rate, at 120 frames a second.
+    score
+        How far it is from the query: the smaller, the more alike, among hits of one search.
+    labels
+        Of the clip.
+
+    """
 
     name: str
     start: int
-    """The first frame."""
     end: int
-    """Behind the last frame."""
     seconds: tuple[float, float]
-    """The same, from the first frame on; of a clip without a rate, at 120 frames a second."""
     score: float
-    """How far it is from the query: the smaller, the more alike, among hits of one search."""
     labels: tuple[str, ...]
 
     @property
@@ -206,6 +220,8 @@ def _made(library: "Finding", clip: int, joints: Mapping[str, str] | None = None
         warnings.simplefilter("ignore", MotionWarning)
         try:
             return index.made_of(library.load(clip, strict=False), joints)
+        except LimitError:
+            raise
         except (FormatError, UnsupportedError):  # no motion, as far as can be read
             return index.NOTHING
 
