@@ -91,14 +91,14 @@ test-js: browser
 	@if command -v node >/dev/null; then node --test tests/viewer/*.test.mjs; \
 	    else test -z "$$CI"; fi
 
-# What the page's tests run in. Where it is not there and cannot be installed, they are skipped and
-# say so; in CI they fail.
+# What the page's tests run in, and the shells in which completion is tried. Where it is not there
+# and cannot be installed, the tests are skipped and say so; in CI those of the page fail.
 browser:
-	@{ command -v node && command -v chromium; } >/dev/null || { \
+	@{ command -v node && command -v chromium && command -v zsh && command -v fish; } >/dev/null || { \
 	    if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
 	        apt-get -qq update && DEBIAN_FRONTEND=noninteractive apt-get -qq install -y \
-	            --no-install-recommends nodejs chromium fonts-dejavu-core >/dev/null; \
-	    else false; fi; } || echo "no node or no chromium (Debian: apt-get install nodejs chromium)"
+	            --no-install-recommends nodejs chromium fonts-dejavu-core zsh fish >/dev/null; \
+	    else false; fi; } || echo "not all there (Debian: apt-get install nodejs chromium zsh fish)"
 
 # Packages of npm that tests take: Khronos's validator of glTF, and three.js with its reader of it.
 node: browser

@@ -25,6 +25,13 @@ if TYPE_CHECKING:
     from mocapress.source import Source
 
 
+def _formats(begun: str) -> list[str]:
+    """Give the formats that begin so, for completion in a shell."""
+    from mocapress.formats import writable
+
+    return [of.id for of in writable() if of.id.startswith(begun)]
+
+
 def convert(
     inputs: Inputs,
     output: Output = None,
@@ -34,6 +41,7 @@ def convert(
             "--to",
             help="Format, e.g. bvh or amc; by default the output's suffix says it. A GLB takes "
             "options: glb:max=0.1cm,unit=cm.",
+            autocompletion=_formats,
         ),
     ] = None,
     asf: Asf = None,
@@ -48,6 +56,14 @@ def convert(
         float | None,
         typer.Option("--fps", help="Frames per second of files that do not state them.", min=1e-3),
     ] = None,
+    constant: Annotated[
+        bool,
+        typer.Option(
+            "--constant-lengths",
+            help="Move markers a little, so that distances that a body keeps stay the same: for "
+            "what a lossy codec has moved.",
+        ),
+    ] = False,
     lenient: Lenient = False,
     jobs: Jobs = 1,
     force: Force = False,
@@ -65,6 +81,7 @@ def convert(
     from mocapress.container import diffma_json
     from mocapress.formats import by_id, readable, suffixes
     from mocapress.motion.convert import with_rate
+    from mocapress.motion.lengths import constant_lengths
     from mocapress.storage import is_stream
 
     wanted = Selection(frames, time, every, resample, retime, fps)
@@ -95,6 +112,7 @@ def convert(
         source = job.opened(limit)
         places = places_for(job, given)
         clip = api.read_source(source, asf, models=places, strict=not lenient)
+        clip = constant_lengths(clip) if constant else clip
         clip = with_rate(wanted.of(clip), needed=made.timed)
         job.outputs |= api.printed(clip, made, job.target)
         if job.target == STREAM or is_stream(job.target):  # which has nothing beside it

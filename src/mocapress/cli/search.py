@@ -46,7 +46,7 @@ def search(
             "--by",
             metavar="NAME",
             help="Compare whole clips by a published signature instead, which reads all motion: "
-            "qssd, qssd-dots or ksvd.",
+            "qssd, qssd-dots, ksvd or patterns.",
         ),
     ] = None,
     sheet: Annotated[

@@ -7,11 +7,13 @@ import numpy as np
 from mocapress.errors import ParameterError
 from mocapress.motion.clip import Clip
 from mocapress.motion.kinematics import Array, positions
+from mocapress.motion.lengths import bone_drift, bones
+from mocapress.motion.markers import POINTS, markers
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Difference:
-    """Errors by channel and, with skeletons, by joint."""
+    """Errors by channel, with skeletons by joint, of markers by the lengths between them."""
 
     channels: tuple[str, ...]
     largest: Array
@@ -25,6 +27,12 @@ class Difference:
     """(J,) largest distance of each joint, length units of the file; None without skeletons."""
     mean_distance: Array | None = None
     """(J,) mean distance of each joint."""
+    bones: tuple[str, ...] = ()
+    """Of markers: pairs whose distance stays in the first clip (``mp.bones``)."""
+    largest_drift: Array | None = None
+    """(B,) how far the length of each bone is off, at most."""
+    mean_drift: Array | None = None
+    """(B,) and on average."""
 
     @property
     def most(self) -> float:
@@ -63,6 +71,14 @@ def compare(first: Clip, second: Clip) -> Difference:
     if first.skeleton and second.skeleton and first.skeleton.names == second.skeleton.names:
         joints = first.skeleton.names
         distances = np.linalg.norm(positions(first) - positions(second), axis=2)
+    tied: tuple[str, ...] = ()
+    drift = None
+    if POINTS in first.streams and POINTS in second.streams:
+        labels = markers(first).labels
+        own = bones(first)
+        tied = tuple(f"{labels[bone.near]} - {labels[bone.far]}" for bone in own)
+        # A marker that is missing has no length.
+        drift = np.nan_to_num(np.abs(bone_drift(first, second, own)))
     return Difference(
         names,
         errors.max(axis=0, initial=0),
@@ -71,6 +87,9 @@ def compare(first: Clip, second: Clip) -> Difference:
         joints,
         None if distances is None else distances.max(axis=0, initial=0),
         None if distances is None else _mean(distances),
+        tied,
+        None if drift is None else drift.max(axis=0, initial=0),
+        None if drift is None else _mean(drift),
     )
 
 
