@@ -181,7 +181,14 @@ def test_the_header_is_c_and_cpp(tmp_path: Path) -> None:
     if compiler is None:
         pytest.skip("no g++")
     for language, standard in (("c", "c99"), ("c++", "c++11")):
-        command = [compiler, "-x", language, f"-std={standard}", "-pedantic-errors", "-Wall"]
+        command: list[object] = [
+            compiler,
+            "-x",
+            language,
+            f"-std={standard}",
+            "-pedantic-errors",
+            "-Wall",
+        ]
         command += ["-Werror", "-fsyntax-only", ROOT / "include/mocapress.h"]
         subprocess.run([str(part) for part in command], check=True)
 
@@ -191,7 +198,12 @@ def test_the_example_of_the_guide_runs(tmp_path: Path, walk: Path) -> None:
     (tmp_path / "example.c").write_text(re.findall(r"```c\n(.*?)```", guide, re.DOTALL)[0])
     play("facts", walk)  # it is built
     folder = next((ROOT / "build/player/prefix").glob("lib*"))
-    command = ["gcc", tmp_path / "example.c", f"-I{folder.parent}/include", f"-L{folder}"]
+    command: list[object] = [
+        "gcc",
+        tmp_path / "example.c",
+        f"-I{folder.parent}/include",
+        f"-L{folder}",
+    ]
     command += [f"-Wl,-rpath,{folder}", "-lmocapress", "-o", tmp_path / "example"]
     subprocess.run([str(part) for part in command], check=True)
     done = subprocess.run([tmp_path / "example", walk], capture_output=True, text=True, check=True)
