@@ -12,7 +12,7 @@ sources := $(wildcard core/*/*.cpp core/*/*.hpp)
 headers := $(filter %.hpp,$(sources)) $(wildcard core/exact/data/*)
 kernels := $(filter-out core/python/% core/wasm/% core/check/% core/fuzz/% core/player/%,$(filter %.cpp,$(sources)))
 
-.PHONY: demo demo-runs test long check stub tests test-js browser node player compilers wasm sanitize fuzz bench wheel clean
+.PHONY: demo demo-runs test long check stub tests test-js browser node player npm compilers wasm sanitize fuzz bench wheel clean
 
 demo: $(VENV)/.installed
 	@PYTHONPATH=benchmarks $(BIN)/python -m mocapress_bench demo
@@ -49,7 +49,7 @@ STUB := $(BIN)/python -m nanobind.stubgen -q -m mocapress._core -o
 stub: $(VENV)/.built
 	$(STUB) src/mocapress/_core.pyi
 
-tests: $(VENV)/.built $(if $(CI),$(VENV)/.zig) corpus browser node player compilers
+tests: $(VENV)/.built $(if $(CI),$(VENV)/.zig) corpus browser node player npm compilers
 	MOCAPRESS_CORPUS=$(if $(wildcard corpus/.version),$(CURDIR)/corpus,$(MOCAPRESS_CORPUS)) \
 	    $(BIN)/pytest -n auto --dist worksteal --durations 20
 
@@ -132,6 +132,14 @@ compilers:
 	            --no-install-recommends clang g++-aarch64-linux-gnu qemu-user \
 	            g++-mingw-w64-x86-64-posix wine wine64 >/dev/null; \
 	    else false; fi; } || echo "not all other compilers are there: $(compilers)"
+
+# The package for npm, of parts of the page: build/npm is what would be published.
+npm_wasm := exact near patterns qssd kinematics
+npm:
+	@rm -rf build/npm && mkdir -p build/npm/mcz build/npm/files/wasm build/npm/files/vendor/xz
+	@cp -r npm/* LICENSE build/npm && cp viewer/mcz/*.js build/npm/mcz
+	@cp $(npm_wasm:%=viewer/wasm/%.wasm) build/npm/files/wasm
+	@cp viewer/vendor/xz/* build/npm/files/vendor/xz && cp src/mocapress/container/dictionary1.bin build/npm/files
 
 # The core for the page, in modules of which it carries those that it needs; viewer/wasm/ keeps what
 # this builds.
