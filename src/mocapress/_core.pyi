@@ -359,6 +359,11 @@ def mrpa_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None
 def mrpa_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], parents: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], pieces: Annotated[NDArray[numpy.int64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], mantissa_limit: int) -> None:
     """Fill ``values`` from a chunk; ValueError where it is none."""
 
+def mrpa_weights(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], parents: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], pieces: Annotated[NDArray[numpy.int64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)]) -> list[int]:
+    """
+    Give the numbers of alpha and beta that are best, for each piece of each column.
+    """
+
 def mrpa_estimated_bits(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], parents: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], pieces: Annotated[NDArray[numpy.int64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)]) -> list[float]:
     """
     Give about how many bits each piece takes without its parent and with it, by turns.
@@ -437,6 +442,11 @@ def patterns_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, 
 
 def patterns_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], header: bytes, model: bytes) -> None:
     """Fill ``values`` from a chunk; ValueError where it is none."""
+
+def patterns_bits(payload: bytes, frames: int, columns: int, header: bytes, model: bytes) -> list[float]:
+    """
+    Give the bits of a chunk's root and protected columns, of its segments' lengths, patterns and places, and of its corrections.
+    """
 
 def qssd_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, model: bytes, most: int, rounding: float, rest_rounding: float, max_errors: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> bytes:
     """Code rows of values as a chunk: core/qssd_learning/encoder.hpp."""

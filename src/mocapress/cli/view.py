@@ -17,8 +17,8 @@ def view(
     files: Annotated[
         list[Path] | None,
         typer.Argument(
-            help="Motion files, .mcz, folders, or one library; given two files, the second is "
-            "compared with the first."
+            help="Motion files, .mcz, folders, or one library; of two files that are alike, the "
+            "second is compared with the first."
         ),
     ] = None,
     export: Annotated[

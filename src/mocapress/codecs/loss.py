@@ -19,6 +19,8 @@ class Loss:
 
     largest: tuple[float, ...]
     """Largest error of each channel, in its unit; infinite where a NaN or infinity changed."""
+    mean: float
+    """Mean error of all finite values, each in its unit."""
     psnr: float
     """-10 log10 of the mean squared error over all finite values, dB; infinite without error."""
 
@@ -32,19 +34,30 @@ class Loss:
         """Measure the loss of (F, C) values; of columns that are angles, modulo whole turns."""
         finite = np.isfinite(original)
         errors = errors_of(original, decoded, columns)
+        known = errors[finite]
         with np.errstate(over="ignore"):
-            squares = errors[finite] ** 2
-            mean = float(squares.mean()) if squares.size else 0.0
+            square = float((known**2).mean()) if known.size else 0.0
+            mean = float(known.mean()) if known.size else 0.0
         largest = errors.max(axis=0, initial=0)
         return cls(
             tuple(float(error) for error in largest),
-            float(-10 * np.log10(mean)) if mean else float("inf"),
+            mean,
+            float(-10 * np.log10(square)) if square else float("inf"),
         )
 
     @property
     def most(self) -> float:
         """The largest error of any channel."""
         return max(self.largest, default=0.0)
+
+    def notes(self) -> dict[str, str]:
+        """Give what a file says of what it lost, as its notes."""
+        facts = zip(LOSS_NOTES, (self.most, self.mean, self.psnr), strict=True)
+        return {key: f"{value:.6g}" for key, value in facts}
+
+
+LOSS_NOTES = ("largest_error", "mean_error", "psnr")
+"""Keys of the notes in which a lossy file says what it lost."""
 
 
 def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss:

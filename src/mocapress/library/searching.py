@@ -30,17 +30,30 @@ _SHARED = 0.5
 
 @dataclass(frozen=True, slots=True)
 class SearchHit:
-    """A clip that was found, or a stretch of one."""
+    """A clip that was found, or a stretch of one.
+
+    Attributes
+    ----------
+    name
+        Of the clip.
+    start
+        The first frame.
+    end
+        Behind the last frame.
+    seconds
+        The same, from the first frame on; of a clip without a rate, at 120 frames a second.
+    score
+        How far it is from the query: the smaller, the more alike, among hits of one search.
+    labels
+        Of the clip.
+
+    """
 
     name: str
     start: int
-    """The first frame."""
     end: int
-    """Behind the last frame."""
     seconds: tuple[float, float]
-    """The same, from the first frame on; of a clip without a rate, at 120 frames a second."""
     score: float
-    """How far it is from the query: the smaller, the more alike, among hits of one search."""
     labels: tuple[str, ...]
 
     @property

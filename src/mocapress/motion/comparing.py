@@ -18,26 +18,43 @@ _TURN = {"deg": 360.0, "rad": tau}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Difference:
-    """Errors by channel, with skeletons by joint, of markers by the lengths between them."""
+    """Errors by channel, with skeletons by joint, of markers by the lengths between them.
+
+    Attributes
+    ----------
+    channels
+        Names of the channels.
+    largest
+        (C,) largest error of each channel, in its unit; infinite where one of two is not finite.
+    mean
+        (C,) mean error of each channel.
+    psnr
+        -10 log10 of the mean squared error of all values, dB; infinite without error.
+    joints
+        Names of the joints; empty without skeletons.
+    largest_distance
+        (J,) largest distance of each joint, length units of the file; None without skeletons.
+    mean_distance
+        (J,) mean distance of each joint.
+    bones
+        Of markers: pairs whose distance stays in the first clip (``mp.bones``).
+    largest_drift
+        (B,) how far the length of each bone is off, at most.
+    mean_drift
+        (B,) and on average.
+
+    """
 
     channels: tuple[str, ...]
     largest: Array
-    """(C,) largest error of each channel, in its unit; infinite where one of two is not finite."""
     mean: Array
-    """(C,) mean error of each channel."""
     psnr: float
-    """-10 log10 of the mean squared error of all values, dB; infinite without error."""
     joints: tuple[str, ...] = ()
     largest_distance: Array | None = None
-    """(J,) largest distance of each joint, length units of the file; None without skeletons."""
     mean_distance: Array | None = None
-    """(J,) mean distance of each joint."""
     bones: tuple[str, ...] = ()
-    """Of markers: pairs whose distance stays in the first clip (``mp.bones``)."""
     largest_drift: Array | None = None
-    """(B,) how far the length of each bone is off, at most."""
     mean_drift: Array | None = None
-    """(B,) and on average."""
 
     @property
     def most(self) -> float:

@@ -14,20 +14,31 @@ Array = NDArray[np.float64]
 _STAYS = 0.05
 """Of a mean length: standard deviation up to which it counts as one that is kept."""
 _MOST_LOOKED_AT = 500
+_MOST_MARKERS = 512
 _SWEEPS = 8
 
 
 @dataclass(frozen=True, slots=True)
 class Bone:
-    """Two markers, or joints, whose distance stays."""
+    """Two markers, or joints, whose distance stays.
+
+    Attributes
+    ----------
+    near
+        Of the two the one that is nearer to the middle of the body, counted from 0.
+    far
+        The other one.
+    length
+        Mean over the frames, in the unit of the clip.
+    spread
+        Standard deviation over the frames.
+
+    """
 
     near: int
-    """Of the two the one that is nearer to the middle of the body, counted from 0."""
     far: int
     length: float
-    """Mean over the frames, in the unit of the clip."""
     spread: float
-    """Standard deviation over the frames."""
 
 
 def bones(clip: Clip) -> tuple[Bone, ...]:
@@ -39,7 +50,8 @@ def bones(clip: Clip) -> tuple[Bone, ...]:
     Parameters
     ----------
     clip
-        With a stream ``points``, of a C3D or TRC. Markers that are missing are left out of means.
+        With a stream ``points``, of a C3D or TRC. Markers that are missing are left out of means;
+        of more than 512 markers there are no bones.
 
     Raises
     ------
@@ -48,20 +60,11 @@ def bones(clip: Clip) -> tuple[Bone, ...]:
 
     """
     found = markers(clip)
+    count = len(found.labels)
     places = np.where(found.valid[:, :, None], found.positions, np.nan)
-    count = places.shape[1]
-    some = places[:: max(1, len(places) // _MOST_LOOKED_AT)]
-    if count < 2 or not len(some):
+    if not 2 <= count <= _MOST_MARKERS or not len(places):
         return ()
-    away = np.linalg.norm(some[:, :, None] - some[:, None], axis=3)
-    seen = np.isfinite(away).sum(axis=0)
-    known = seen > 0
-    total = np.nansum(away, axis=0)
-    means = np.divide(total, seen, where=known, out=np.full_like(total, np.inf))
-    squares = np.nansum((away - np.where(known, means, 0)) ** 2, axis=0)
-    spreads = np.sqrt(np.divide(squares, seen, where=known, out=np.full_like(total, np.inf)))
-    kept = (spreads <= _STAYS * means) & (means > 0) & known
-    spreads = np.where(kept, spreads, np.inf)
+    means, spreads = _kept(places[:: max(1, len(places) // _MOST_LOOKED_AT)])
     waiting = [int(i) for i in np.argsort(means.sum(axis=1), kind="stable")]
     tree: list[tuple[int, int]] = []
     reached: list[int] = [waiting.pop(0)]
@@ -140,6 +143,21 @@ def constant_lengths(clip: Clip, of: Sequence[Bone] | None = None) -> Clip:
     points = clip.streams[POINTS]
     flat = places.reshape(points.frames, points.channels)
     return replace(clip, streams={**clip.streams, POINTS: replace(points, values=flat)})
+
+
+def _kept(places: Array) -> tuple[Array, Array]:
+    """Give means and standard deviations of distances, (P, P); infinite where they are not kept."""
+    count = places.shape[1]
+    means, spreads = np.full((2, count, count), np.inf)
+    for i in range(count):
+        away = np.linalg.norm(places - places[:, i : i + 1], axis=2)
+        seen = np.isfinite(away).sum(axis=0)
+        known = seen > 0
+        means[i, known] = np.nansum(away[:, known], axis=0) / seen[known]
+        squares = np.nansum((away[:, known] - means[i, known]) ** 2, axis=0)
+        spreads[i, known] = np.sqrt(squares / seen[known])
+    stays = (means > 0) & np.isfinite(means) & (spreads <= _STAYS * means)
+    return means, np.where(stays, spreads, np.inf)
 
 
 def _lengths(places: Array, tree: Sequence[tuple[int, int]]) -> Array:

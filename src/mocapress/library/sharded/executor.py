@@ -119,7 +119,7 @@ def _client(cluster: str) -> Iterator[Any]:
         dask: Any = import_module("distributed")
     except ImportError:
         raise UnsupportedError(
-            "--cluster needs Dask", expected="pip install 'mocapress[cluster]'"
+            "a cluster needs Dask", expected="pip install 'mocapress[cluster]'"
         ) from None
     if not cluster.startswith(LOCAL):
         if "://" not in cluster:

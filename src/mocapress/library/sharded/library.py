@@ -109,8 +109,7 @@ class ShardedLibrary(ShardedReading):
                 return self[clip.name]
             if old is not None and not replace:
                 raise ExistsError(
-                    "there is a clip of this name; --replace or replace=True puts this one in "
-                    "its place",
+                    "there is a clip of this name; replace=True puts this one in its place",
                     file=clip.name,
                 )
             spec = codecs.spec(checked_codec(codec, None)) if model is None else str(codec)
