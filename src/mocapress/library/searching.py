@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from mocapress.errors import (
     BusyError,
     FormatError,
+    LimitError,
     MocapressError,
     MotionWarning,
     ParameterError,
@@ -224,6 +225,8 @@ def _made(library: "Finding", clip: int, joints: Mapping[str, str] | None = None
         warnings.simplefilter("ignore", MotionWarning)
         try:
             return index.made_of(library.load(clip, strict=False), joints)
+        except LimitError:
+            raise
         except (FormatError, UnsupportedError):  # no motion, as far as can be read
             return index.NOTHING
 
