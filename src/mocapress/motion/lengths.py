@@ -22,15 +22,25 @@ _SWEEPS = 8
 
 @dataclass(frozen=True, slots=True)
 class Bone:
-    """Two markers, or joints, whose distance stays."""
+    """Two markers, or joints, whose distance stays.
+
+    Attributes
+    ----------
+    near
+        Of the two the one that is nearer to the middle of the body, counted from 0.
+    far
+        The other one.
+    length
+        Mean over the frames, in the unit of the clip.
+    spread
+        Standard deviation over the frames.
+
+    """
 
     near: int
-    """Of the two the one that is nearer to the middle of the body, counted from 0."""
     far: int
     length: float
-    """Mean over the frames, in the unit of the clip."""
     spread: float
-    """Standard deviation over the frames."""
 
 
 def bones(clip: Clip) -> tuple[Bone, ...]:

@@ -161,7 +161,7 @@ def _correspondence(clip: Clip, mapping: Mapping[str, str] | None, places: Array
     raise UnsupportedError(
         "the skeleton has no joints that correspond to " + ", ".join(missing),
         file=_name(clip),
-        expected="a body with arms, legs and a head, or a mapping of names (--joints)",
+        expected="a body with arms, legs and a head, or a mapping of names (joints=...)",
         found=" ".join(clip.skeleton.names[:20])
         + (" ..." if len(clip.skeleton.names) > 20 else ""),
     )
