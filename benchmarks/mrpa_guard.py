@@ -52,7 +52,7 @@ def taken(streams: Sequence[Stream], made: Together, counts: Taken) -> None:
     """Count which alphas and betas the pieces of columns take."""
     values = [np.ascontiguousarray(stream.values, dtype=np.float64) for stream in streams]
     others = {
-        digest: values[origin.clip][origin.first : origin.first + origin.frames]
+        digest: values[origin.stream][origin.first : origin.first + origin.frames]
         for digest, origin in made.origins.items()
     }
     for own, one, stream in zip(values, made.encoded, streams, strict=True):

@@ -11,7 +11,7 @@ from mocapress.motion.clip import Clip
 from mocapress.motion.markers import POINTS, markers
 
 Array = NDArray[np.float64]
-_STAYS = 0.05
+_STAYS = 0.02
 """Of a mean length: standard deviation up to which it counts as one that is kept."""
 _MOST_LOOKED_AT = 500
 _OFTEN = 0.1
