@@ -58,10 +58,11 @@ void bind_search(nb::module_& module) {
   module.def("warp", &bound_warp, nb::arg("one"), nb::arg("other"), nb::arg("limit"),
              "Mean distance along the best alignment of (F, D) and (G, D), or infinity where it is "
              "above the limit.");
-  module.def("find_stretches", &bound_find_stretches, nb::arg("wanted"), nb::arg("motion"),
-             nb::arg("damped") = false,
-             "Of each frame of the motion (G, D), the best match of (F, D) that ends there: mean "
-             "distances (G,), infinite for none, and first frames (G,). Damped: of distances to 3/4.");
+  module.def(
+      "find_stretches", &bound_find_stretches, nb::arg("wanted"), nb::arg("motion"),
+      nb::arg("damped") = false,
+      "Of each frame of the motion (G, D), the best match of (F, D) that ends there: mean "
+      "distances (G,), infinite for none, and first frames (G,). Damped: of distances to 3/4.");
 }
 
 }  // namespace mocapress
