@@ -37,8 +37,8 @@ class Library:
         self.tables = sqlite3.connect(f"{path.resolve().as_uri()}?immutable=1", uri=True)
         (version,) = self.tables.execute("PRAGMA user_version").fetchone()
         (kind,) = self.tables.execute("PRAGMA application_id").fetchone()
-        if kind != 0x4D435A4C or not 2 <= version <= 3:
-            raise CorruptError("no library of version 2 or 3")
+        if kind != 0x4D435A4C or not 2 <= version <= 4:
+            raise CorruptError("no library of version 2 to 4")
         self.clips: dict[int, File] = {}
 
     def restored(self, name: str) -> bytes:

@@ -1,7 +1,8 @@
 """``view``."""
 
+from base64 import b64decode
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -12,13 +13,16 @@ if TYPE_CHECKING:
 
     from mocapress.viewer.server import Answer
 
+MANIFESTS = "manifest/*.parquet"
+"""What the folder of a sharded library has, and one of motion files has not."""
+
 
 def view(
     files: Annotated[
-        list[Path] | None,
+        list[str] | None,
         typer.Argument(
-            help="Motion files, .mcz, folders, or one library; of two files that are alike, the "
-            "second is compared with the first."
+            help="Motion files, .mcz, folders, or one library, also the folder or URL of a sharded "
+            "one; of two files that are alike, the second is compared with the first."
         ),
     ] = None,
     export: Annotated[
@@ -34,6 +38,14 @@ def view(
             min=1e-12,
         ),
     ] = None,
+    near: Annotated[
+        str | None,
+        typer.Option(
+            "--near",
+            help="Export motion by the codec near with these parameters, e.g. max=0.1cm or "
+            "p=0.1cm, instead of exact values.",
+        ),
+    ] = None,
     asf: Asf = None,
     port: Annotated[
         int,
@@ -47,6 +59,8 @@ def view(
     debug: Debug = False,
 ) -> None:
     """Play motion files in the browser, side by side, or write a page that plays them."""
+    from mocapress import codecs
+    from mocapress.cli.batch import usage
     from mocapress.cli.report import message, say
     from mocapress.cli.targets import known_endings, refuse_other_kinds
     from mocapress.cli.warned import collecting, kept
@@ -55,14 +69,17 @@ def view(
     from mocapress.viewer import embed, page
     from mocapress.viewer.server import nothing
 
-    if any(path.suffix.lower() == ".mocapdb" for path in files or []):
+    if any(_is_library(name) for name in files or []):
         _serve_library(files or [], export, port, browser=browser, strict=not lenient, debug=debug)
         return
-    inputs = _found(files or [])
+    inputs = _found([Path(name) for name in files or []])
     refuse_other_kinds(str(export) if export else None, (".html",), known_endings())
+    if near is not None and (max_error is not None or not export):
+        usage("--near is for --export, instead of --max-error")
     stated = max_error if export else None
-    name = ""
+    name = "--near" if near is not None else ""
     try:
+        lossy = codecs.codec(f"near:{near}") if near is not None else None
         if export:
             check_targets([export], force=force)
         clips = []
@@ -73,6 +90,7 @@ def view(
                     path,
                     asf_path=asf,
                     max_error=stated,
+                    near=lossy,
                     level=embed.LEVEL if export else embed.FAST,
                     strict=not lenient,
                 )
@@ -93,9 +111,14 @@ def view(
         say(message(error, name))
         raise typer.Exit(1) from error
     if export:
-        print(f"{export}: {len(document.encode())} bytes, {_exactness(stated)}")
+        print(f"{export}: {len(document.encode())} bytes, {_exactness(stated, near, clips)}")
     else:
         serve(document, port, browser=browser, more=nothing)
+
+
+def _is_library(name: str) -> bool:
+    """Tell a library from motion files and folders of them."""
+    return name.lower().endswith(".mocapdb") or "://" in name or any(Path(name).glob(MANIFESTS))
 
 
 def _found(paths: list[Path]) -> list[Path]:
@@ -108,7 +131,7 @@ def _found(paths: list[Path]) -> list[Path]:
 
 
 def _serve_library(
-    inputs: list[Path],
+    inputs: list[str],
     export: Path | None,
     port: int,
     *,
@@ -134,7 +157,7 @@ def _serve_library(
     except (MocapressError, OSError) as error:
         if debug:
             raise
-        say(message(error, str(library)))
+        say(message(error, library))
         raise typer.Exit(1) from error
 
 
@@ -166,5 +189,8 @@ def serve(
             print()
 
 
-def _exactness(max_error: float | None) -> str:
+def _exactness(max_error: float | None, near: str | None, clips: list[dict[str, Any]]) -> str:
+    if near is not None:
+        motion = sum(len(b64decode(clip["mcz"])) for clip in clips if "mcz" in clip)
+        return f"{motion} of them motion, near:{near}"
     return "exact values" if max_error is None else f"no value off by more than {max_error:g}"

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from mocapress.errors import (
+    BusyError,
     FormatError,
+    LimitError,
     MocapressError,
     MotionWarning,
     ParameterError,
@@ -87,6 +89,7 @@ def completed(library: "Finding") -> Searchable:
     with library.db.reading() as connection:
         kept = index.signatures(connection)
     found, made = dict(kept), dict[int, Entry]()
+    keeping = library.db.writable
     for clip, signature in kept:
         if signature is not None:
             continue
@@ -95,11 +98,14 @@ def completed(library: "Finding") -> Searchable:
         except MocapressError:
             continue  # damaged: `library check` tells
         found[clip] = entry.signature
-        if library.db.writable:
-            with library.db.writing() as connection:
-                index.write(connection, clip, entry)
-        else:
-            made[clip] = entry
+        if keeping:
+            try:
+                with library.db.writing() as connection:
+                    index.write(connection, clip, entry)
+                continue
+            except BusyError:  # others are at work: nothing is lost but time
+                keeping = False
+        made[clip] = entry
     there = {clip: signature for clip, signature in found.items() if signature}
     return Searchable([*there], [*there.values()], made)
 
@@ -219,6 +225,8 @@ def _made(library: "Finding", clip: int, joints: Mapping[str, str] | None = None
         warnings.simplefilter("ignore", MotionWarning)
         try:
             return index.made_of(library.load(clip, strict=False), joints)
+        except LimitError:
+            raise
         except (FormatError, UnsupportedError):  # no motion, as far as can be read
             return index.NOTHING
 
