@@ -157,9 +157,13 @@ def _clip(library: "Library", query: str, asf: Path | None) -> "Clip | StoredCli
 
 
 def _stretch(clip: "Clip | StoredClip", time: Seconds) -> slice:
+    from fractions import Fraction
+
+    from mocapress.motion.editing import frames_between
     from mocapress.search.standard import ASSUMED_RATE
 
-    return time.frames(float(clip.frame_time or 1 / ASSUMED_RATE))
+    frame_time = Fraction(clip.frame_time or 1 / ASSUMED_RATE)
+    return frames_between(time.start, time.end, frame_time)
 
 
 def _row(rank: int, hit: "SearchHit") -> dict[str, Any]:
