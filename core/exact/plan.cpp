@@ -10,7 +10,7 @@ namespace {
 
 // More channels than these are cut into blocks, so that time grows with their number, not its
 // square.
-constexpr std::size_t kMostTogether = 72;
+constexpr std::size_t kMostTogether = 160;
 
 Variable past(std::size_t channel, int age) {
   return {Variable::Kind::past,
