@@ -11,7 +11,7 @@ sources := $(wildcard core/*/*.cpp core/*/*.hpp)
 headers := $(filter %.hpp,$(sources)) $(wildcard core/exact/data/*)
 kernels := $(filter-out core/python/% core/wasm/% core/check/% core/fuzz/%,$(filter %.cpp,$(sources)))
 
-.PHONY: demo demo-runs test long check stub tests test-js browser compilers wasm sanitize fuzz bench wheel clean
+.PHONY: demo demo-runs test long check stub tests test-js browser node compilers wasm sanitize fuzz bench wheel clean
 
 demo: $(VENV)/.installed
 	@PYTHONPATH=benchmarks $(BIN)/python -m mocapress_bench demo
@@ -48,7 +48,7 @@ STUB := $(BIN)/python -m nanobind.stubgen -q -m mocapress._core -o
 stub: $(VENV)/.built
 	$(STUB) src/mocapress/_core.pyi
 
-tests: $(VENV)/.built $(if $(CI),$(VENV)/.zig) corpus browser compilers
+tests: $(VENV)/.built $(if $(CI),$(VENV)/.zig) corpus browser node compilers
 	MOCAPRESS_CORPUS=$(if $(wildcard corpus/.version),$(CURDIR)/corpus,$(MOCAPRESS_CORPUS)) \
 	    $(BIN)/pytest -n auto --dist worksteal --durations 20
 
@@ -80,14 +80,21 @@ test-js: browser
 	@if command -v node >/dev/null; then node --test tests/viewer/*.test.mjs; \
 	    else test -z "$$CI"; fi
 
-# What the page's tests run in. Where it is not there and cannot be installed, they are skipped and
-# say so; in CI they fail.
+# What the page's tests run in, and the shells in which completion is tried. Where it is not there
+# and cannot be installed, the tests are skipped and say so; in CI those of the page fail.
 browser:
-	@{ command -v node && command -v chromium; } >/dev/null || { \
+	@{ command -v node && command -v chromium && command -v zsh && command -v fish; } >/dev/null || { \
 	    if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
 	        apt-get -qq update && DEBIAN_FRONTEND=noninteractive apt-get -qq install -y \
-	            --no-install-recommends nodejs chromium fonts-dejavu-core >/dev/null; \
-	    else false; fi; } || echo "no node or no chromium (Debian: apt-get install nodejs chromium)"
+	            --no-install-recommends nodejs chromium fonts-dejavu-core zsh fish >/dev/null; \
+	    else false; fi; } || echo "not all there (Debian: apt-get install nodejs chromium zsh fish)"
+
+# Packages of npm that tests take: Khronos's validator of glTF, and three.js with its reader of it.
+node: browser
+	@cmp -s tests/node/package-lock.json build/node/package-lock.json || { \
+	    mkdir -p build/node && cp tests/node/*.json build/node && \
+	    npm ci --silent --no-audit --no-fund --prefix build/node; } || { \
+	    rm -f build/node/package-lock.json; echo "no packages of npm: tests of glTF in viewers are skipped"; }
 
 # What builds the core in other ways and runs it there (tests/core/test_determinism.py). What is
 # missing and cannot be installed is skipped by the tests, which say so.

@@ -76,6 +76,20 @@ def test_the_commands_for_markers_run(tmp_path: Path, monkeypatch: pytest.Monkey
         assert restored == (ROOT / f"samples/markers.{kind}").read_bytes()
 
 
+def test_the_guide_to_gltf_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copy(ROOT / "samples/freebvh.bvh", tmp_path / "walk.bvh")
+    monkeypatch.chdir(tmp_path)
+    guide = ROOT / "docs/guide/gltf.md"
+    commands = re.findall(r"^\$ mocapress (.+)$", guide.read_text(), re.MULTILINE)
+    assert len(commands) > 4
+    for command in commands:
+        result = CliRunner().invoke(app, command.split())
+        assert result.exit_code == 0, (command, result.output)
+    found = doctest.testfile(str(guide), module_relative=False)
+    assert found.attempted > 3
+    assert not found.failed
+
+
 def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for suffix in ("amc", "asf"):
         shutil.copy(ROOT / f"samples/cmu_01_01.{suffix}", tmp_path / f"walk.{suffix}")

@@ -62,7 +62,9 @@ qssd::Plan plan_of(bool learned, bool reversed, double patch) {
 bool check_one(const std::string& name, const std::vector<double>& values, const qssd::Plan& plan,
                double max_error) {
   const std::size_t frames = values.size() / kColumns;
-  const auto payload = qssd::encode_chunk(values.data(), frames, plan, {4, 0.4, 0.3, max_error});
+  const std::vector<double> limits(values.size(), max_error);
+  const auto payload =
+      qssd::encode_chunk(values.data(), frames, plan, {4, 0.4, 0.3}, limits.data());
   std::vector<double> decoded(values.size());
   qssd::decode(payload, decoded.data(), frames, plan);
   std::printf("qssd, %s: %zu bytes, %016llx\n", name.c_str(), payload.size(),

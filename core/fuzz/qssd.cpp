@@ -35,7 +35,8 @@ void round_trip(Input& input, const qssd::Plan& plan, std::size_t frames) {
     for (std::size_t i = 0; i < size; ++i) values.push_back(input.below(256) * 0.5);
   }
   values.resize(size);
-  Bytes payload = qssd::encode_chunk(values.data(), frames, plan, {4, 0.4, 0.3, max_error});
+  const std::vector<double> limits(size, max_error);
+  Bytes payload = qssd::encode_chunk(values.data(), frames, plan, {4, 0.4, 0.3}, limits.data());
   std::vector<double> decoded(size);
   qssd::decode(payload, decoded.data(), frames, plan);
   for (std::size_t i = 0; i < size; ++i) {

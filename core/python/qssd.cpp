@@ -13,19 +13,23 @@ qssd::Plan plan_of(const nb::bytes& header, const nb::bytes& model, std::size_t 
   return qssd::read_plan(view(header), view(model), columns);
 }
 
-qssd::Effort effort_of(std::size_t most, double rounding, double rest_rounding, double max_error) {
+qssd::Effort effort_of(std::size_t most, double rounding, double rest_rounding) {
   if (most < 1 || most > qssd::kMostAtoms) throw nb::value_error("no such number of atoms");
-  return {most, rounding, rest_rounding, max_error};
+  return {most, rounding, rest_rounding};
 }
 
 nb::bytes encode(const Input<double, 2>& values, const nb::bytes& header, const nb::bytes& model,
-                 std::size_t most, double rounding, double rest_rounding, double max_error) {
+                 std::size_t most, double rounding, double rest_rounding,
+                 const Input<double, 2>& max_errors) {
   const auto plan = plan_of(header, model, values.shape(1));
-  const auto effort = effort_of(most, rounding, rest_rounding, max_error);
+  const auto effort = effort_of(most, rounding, rest_rounding);
+  if (max_errors.shape(0) != values.shape(0) || max_errors.shape(1) != values.shape(1)) {
+    throw nb::value_error("limits of errors that are not as many as values");
+  }
   Bytes payload;
   {
     const nb::gil_scoped_release release;
-    payload = qssd::encode_chunk(values.data(), values.shape(0), plan, effort);
+    payload = qssd::encode_chunk(values.data(), values.shape(0), plan, effort, max_errors.data());
   }
   return to_python(payload);
 }
@@ -42,7 +46,7 @@ Given<std::int64_t, 2> symbols(const Input<double, 2>& values, const nb::bytes& 
                                const nb::bytes& model, std::size_t most, double rounding,
                                double rest_rounding) {
   const auto plan = plan_of(header, model, values.shape(1));
-  const auto effort = effort_of(most, rounding, rest_rounding, 0);
+  const auto effort = effort_of(most, rounding, rest_rounding);
   std::vector<std::int64_t> found;
   {
     const nb::gil_scoped_release release;
@@ -87,7 +91,7 @@ void bind_qssd(nb::module_& module) {
   const auto rounding = nb::arg("rounding");
   const auto rest_rounding = nb::arg("rest_rounding");
   module.def("qssd_encode", &encode, values, header, model, most, rounding, rest_rounding,
-             nb::arg("max_error"),
+             nb::arg("max_errors"),
              "Code rows of values as a chunk: core/qssd_learning/encoder.hpp.");
   module.def("qssd_decode", &decode, nb::arg("payload"), values.noconvert(), header, model,
              "Fill ``values`` from a chunk; ValueError where it is none.");

@@ -185,7 +185,7 @@ class Encoder {
 };
 
 Patches patches_of(const double* values, const std::vector<double>& decoded, std::size_t frames,
-                   const Plan& plan, const Effort& effort) {
+                   const Plan& plan, const double* max_errors) {
   const std::size_t columns = plan.body.columns;
   const auto most = limits_of(plan);
   Patches patches{std::vector<std::uint8_t>(frames * columns),
@@ -193,13 +193,14 @@ Patches patches_of(const double* values, const std::vector<double>& decoded, std
   for (std::size_t c = 0; c < columns; ++c) {
     for (std::size_t f = 0; f < frames; ++f) {
       const double value = values[f * columns + c], near = decoded[f * columns + c];
-      if (std::fabs(value) <= most[c] && std::fabs(value - near) <= effort.max_error) continue;
+      const double limit = max_errors[f * columns + c];
+      if (std::fabs(value) <= most[c] && std::fabs(value - near) <= limit) continue;
       const std::size_t at = c * frames + f;
       const double steps = plan.patch > 0 ? (value - near) / plan.patch : kMostCorrections;
       const auto nearest =
           std::fabs(steps) < kMostCorrections ? rounded(steps, 0.5) : std::int64_t{0};
       const double corrected = near + static_cast<double>(nearest) * plan.patch;
-      if (nearest != 0 && std::fabs(value - corrected) <= effort.max_error) {
+      if (nearest != 0 && std::fabs(value - corrected) <= limit) {
         patches.kinds[at] = 1;
         patches.corrections[at] = nearest;
       } else {
@@ -238,13 +239,13 @@ std::vector<std::int64_t> symbols_of(const double* values, std::size_t frames, c
   return code_all(values, frames, plan, effort, pose);
 }
 
-Bytes encode_chunk(const double* values, std::size_t frames, const Plan& plan,
-                   const Effort& effort) {
+Bytes encode_chunk(const double* values, std::size_t frames, const Plan& plan, const Effort& effort,
+                   const double* max_errors) {
   Pose pose(frames, plan.body);
   const auto symbols = code_all(values, frames, plan, effort, pose);
   std::vector<double> decoded(frames * plan.body.columns);
   write_rows(pose, frames, plan, decoded.data());
-  return encode(symbols, frames, plan, patches_of(values, decoded, frames, plan, effort));
+  return encode(symbols, frames, plan, patches_of(values, decoded, frames, plan, max_errors));
 }
 
 Pose pose_of(const double* values, std::size_t frames, const Plan& plan) {

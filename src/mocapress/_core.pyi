@@ -421,7 +421,7 @@ def patterns_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, 
 def patterns_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], header: bytes, model: bytes) -> None:
     """Fill ``values`` from a chunk; ValueError where it is none."""
 
-def qssd_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, model: bytes, most: int, rounding: float, rest_rounding: float, max_error: float) -> bytes:
+def qssd_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, model: bytes, most: int, rounding: float, rest_rounding: float, max_errors: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> bytes:
     """Code rows of values as a chunk: core/qssd_learning/encoder.hpp."""
 
 def qssd_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], header: bytes, model: bytes) -> None:

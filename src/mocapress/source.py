@@ -240,13 +240,14 @@ class Source:
 
         """
         of = of or self.format
-        if of is None or of.split is None:
+        take_apart = (of.split or of.read) if of else None
+        if of is None or take_apart is None:
             known = formats.listed(formats.readable())
             raise FormatError("not a motion file", file=self.name or None, expected=known)
-        split, data = of.split, self.data if contents is None else contents
+        data = self.data if contents is None else contents
 
         def taken_apart(skeleton: Skeleton | None) -> Split:
-            return split(data, skeleton, self.name or None)
+            return take_apart(data, skeleton, self.name or None)
 
         parts = self.with_skeleton(of, taken_apart, asf_path)
         return parts._replace(clip=self.told(parts.clip))
@@ -455,8 +456,10 @@ def read(source: Source, asf_path: str | Path | None = None, *, strict: bool = T
         columns = skeleton_columns(skeleton)
         empty = np.empty((0, len(columns)))
         return Clip.of(empty, columns, None, skeleton, Path(source.name).stem)
-    if of is None or of.split is None:
-        known = formats.listed(tuple(f for f in formats.formats() if f.split or f.read_skeleton))
+    if of is None or not (of.split or of.read):
+        known = formats.listed(
+            tuple(f for f in formats.formats() if f.split or f.read or f.read_skeleton)
+        )
         raise FormatError("not a motion file", file=file, expected=known)
     parts = source.split(asf_path)
     source.accept(parts.problems, strict=strict)

@@ -180,3 +180,9 @@ def test_codecs_are_listed_with_their_parameters() -> None:
     assert "exact: " in listed
     assert "level=" in listed
     assert '"id": "diffma"' in mocapress("codecs", "--json").stdout
+
+
+def test_the_help_names_short_ways_exit_codes_and_debug() -> None:
+    shown = mocapress("--help").output
+    for promised in ("-d restores", "-1 to -9", "Exit codes:", "130: Ctrl-C", "--debug"):
+        assert promised in shown

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 import mocapress as mp
 from mocapress.codecs import Codec
-from mocapress.codecs.near.goal import amount, goal_of
+from mocapress.codecs.near.goal import goal_of
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Joint, Skeleton
 from mocapress.motion.kinematics import positions, rotations
+from mocapress.motion.units import amount
 
 Values = NDArray[np.float64]
 CMU = 2.54 / 0.45

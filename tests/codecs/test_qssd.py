@@ -12,7 +12,7 @@ from mocapress import codecs
 from mocapress.codecs import Encoded, Model
 from mocapress.codecs.qssd.body import body_of
 from mocapress.codecs.qssd.quaternions import turned_degrees
-from mocapress.errors import CorruptError, ParameterError
+from mocapress.errors import CorruptError, ParameterError, UnsupportedError
 from mocapress.motion.kinematics import local_rotations, positions
 
 Array = NDArray[np.float64]
@@ -206,3 +206,50 @@ def test_columns_are_joints_and_numbers(walk: mp.Clip) -> None:
 def test_wrong_parameters_are_refused(wrong: str) -> None:
     with pytest.raises(ParameterError, match=f"qssd:{wrong.partition('=')[0]}"):
         codecs.codec(f"qssd:{wrong}")
+
+
+@pytest.mark.parametrize(("source", "most"), [("cmu_01_01.amc", 0.1), ("freebvh.bvh", 0.5)])
+def test_protected_feet_stay_where_they_stand(samples: Path, source: str, most: float) -> None:
+    clip = mp.read(samples / source)[:600]
+    assert clip.skeleton is not None
+    standing = clip.contacts(fps=120)
+    joints = [clip.skeleton.index(name) for name in standing]
+    frames = np.stack([*standing.values()], axis=1)
+
+    def farthest(codec: str, model: Model | None = None) -> tuple[int, float]:
+        encoded, back = coded(codec, clip, model)
+        apart = np.linalg.norm(positions(clip)[:, joints] - positions(back)[:, joints], axis=-1)
+        return size(encoded), float(apart[frames].max())
+
+    without, far = farthest("qssd:step=1")
+    assert far > most
+    sizes = [without]
+    for limit in (most, most / 10):
+        bytes_, kept = farthest(f"qssd:step=1,protect={limit}")
+        assert kept <= limit
+        sizes.append(bytes_)
+    assert sizes == sorted(sizes)
+    learned = mp.train([clip], "qssd:atoms=4,iterations=2")
+    assert farthest(f"qssd:step=1,protect={most}", learned)[1] <= most
+
+
+def test_protected_feet_and_bounded_values_are_kept_together(walk: mp.Clip) -> None:
+    clip = walk[:300]
+    _, back = coded("qssd:protect=0.05,max_error=2", clip)
+    assert np.abs(back.values - clip.values).max() <= 2
+    for name, frames in clip.contacts(fps=120).items():
+        assert clip.skeleton is not None
+        joint = clip.skeleton.index(name)
+        apart = np.linalg.norm(positions(clip)[:, joint] - positions(back)[:, joint], axis=-1)
+        assert apart[frames].max(initial=0) <= 0.05
+
+
+def test_feet_are_protected_only_where_there_are_some(walk: mp.Clip) -> None:
+    made = codecs.codec("qssd:protect=0.1")
+    with pytest.raises(UnsupportedError, match="skeleton"):
+        made.encode(walk.main)
+    with pytest.raises(ParameterError, match="protect"):
+        codecs.codec("qssd:protect=0")
+    still = walk[:1]
+    encoded = made.encode(still.main, skeleton=still.skeleton)
+    assert made.decode(encoded.header, encoded.chunks, still.columns).shape == still.values.shape

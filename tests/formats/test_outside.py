@@ -76,7 +76,7 @@ def test_broken_tables_are_refused_as_other_files_are() -> None:
     with pytest.raises(mp.FormatError, match="expected TABLE and a rate"):
         mp.read("headless.tbl")
     with pytest.raises(
-        mp.FormatError, match="expected AMC, ASF, BVH, C3D, CSV, NPY, NPZ, TRC or table"
+        mp.FormatError, match="expected AMC, ASF, BVH, C3D, CSV, GLB, NPY, NPZ, TRC or table"
     ):
         mp.read(b"1.25\n")
 

@@ -16,6 +16,7 @@ from mocapress.codecs.mrpa import together
 from mocapress.container.chunks import read_list
 from mocapress.errors import CorruptError, MotionWarning, VerificationError
 from mocapress.library import Library, open_library
+from mocapress.viewer import server
 
 pytest.importorskip("cv2")
 COUNT = 4
@@ -307,6 +308,27 @@ def test_needs_in_a_circle_end(library: Library, files: dict[str, bytes]) -> Non
             again.read_bytes(name)
 
 
+def test_a_damaged_clip_names_those_that_are_predicted_from_it(
+    library: Library, files: dict[str, bytes]
+) -> None:
+    library.recompress_together(list(files), "mrpa")
+    dependants = {name for name, source in needs(library) if source == "a.bvh"}
+    path = library.path
+    library.close()
+    with sqlite3.connect(path) as connection:
+        clip, sections = connection.execute(
+            "SELECT clip, sections FROM chunks JOIN clips ON clip = id WHERE name = 'a.bvh'"
+        ).fetchone()
+        broken = bytes(byte ^ (i % 97 == 40) for i, byte in enumerate(sections))
+        connection.execute("UPDATE chunks SET sections = ? WHERE clip = ?", [broken, clip])
+    connection.close()
+    with open_library(path) as again:
+        told = [fault for fault in again.check() if "clip a.bvh, which is damaged" in fault.what]
+        assert dependants
+        assert {fault.name for fault in told} == dependants
+        assert {fault.name for fault in again.verify()} >= dependants
+
+
 def test_the_command_codes_all_together(library: Library, files: dict[str, bytes]) -> None:
     path = str(library.path)
     library.close()
@@ -352,3 +374,26 @@ def test_a_library_without_motion_has_no_patterns(library: Library) -> None:
     result = mocapress("library", "patterns", path)
     assert result.exit_code == 0
     assert result.stdout == "no motion\n"
+
+
+def test_pairs_are_played_side_by_side(
+    library: Library, files: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pages = []
+
+    def end(self: server.PageServer) -> None:
+        pages.append(self.content.decode())
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(server.PageServer, "serve_forever", end)
+    path = str(library.path)
+    library.close()
+    result = mocapress("library", "patterns", path, "--view", "--no-browser")
+    assert result.exit_code == 0, result.output
+    (document,) = pages
+    clips = json.loads(document.split('id="clips">')[1].split("</script>")[0])["clips"]
+    names = [clip["name"].split(" ") for clip in clips]
+    assert len(names) in (2, 4, 6)
+    assert all(name in files for name, _ in names)
+    # The longest pair is the part of the first take that the third repeats.
+    assert [name for name, _ in names[:2]] == ["c.bvh", "a.bvh"]

@@ -222,7 +222,7 @@ def _of_contents(opened: Opened, asf_path: str | Path | None, *, strict: bool) -
     assert original is not None  # a file has a head or an original
     data = contents(opened, original)
     of = formats.recognise(data, original.name)
-    if of is None or of.split is None:
+    if of is None or not (of.split or of.read):
         known = formats.listed(formats.readable())
         raise FormatError("no motion in this file", expected=f"{known} inside")
     parts = source.split(asf_path, of, data)

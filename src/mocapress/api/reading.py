@@ -99,7 +99,7 @@ def write(
     path
         Its ending names the format.
     to
-        Id of the format, whatever the ending.
+        Id of the format, whatever the ending, and its options: ``"glb:max=0.1cm"``.
     fps
         Frames per second, instead of those of the clip. A BVH has to state its frame time: where
         neither the clip nor ``fps`` says it, 120 are assumed, with a ``MotionWarning``.
@@ -124,7 +124,7 @@ def write(
         clip = with_rate(clip, fps)
         write_whole(path, diffma_json.named(path.name, diffma_json.to_json(clip)), force=force)
         return
-    of = formats.by_id(to) if to else formats.for_writing(path.name)
+    of = formats.configured(to) if to else formats.for_writing(path.name)
     if of is None:
         known = formats.listed(formats.writable())
         raise UnsupportedError(

@@ -24,8 +24,6 @@ from mocapress.version import __version__
 
 app = typer.Typer(
     cls=Commands,
-    help="Store, play and search motion capture: AMC, ASF, BVH, C3D, TRC and tables, restored byte "
-    "for byte.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -46,13 +44,13 @@ def options(
     ] = False,
     debug: Debug = False,
 ) -> None:
-    """Store, play and search motion capture: AMC, ASF and BVH, restored byte for byte.
+    """Store, play and search motion capture: AMC, BVH, C3D, TRC and tables, restored byte for byte.
 
-    As with zstd and xz, mocapress FILE compresses, -d restores, -l lists and -t verifies; -1 to -9,
-    -c, -f, -k, -o, -q, -r, -T and -v are what they are there.
+    As with zstd and xz: mocapress FILE compresses, -d restores, -l lists and
+    -t verifies; -1 to -9, -c, -f, -k, -o, -q, -r, --rm, -T and -v.
 
-    Exit codes: 0 done, 1 bad input, 2 wrong usage, 3 verification failed, 70 a defect of
-    mocapress, 128 and more ended by a signal (130: Ctrl-C).
+    Exit codes: 0 done; 1 bad input; 2 wrong usage; 3 damage or a difference
+    found; 70 a defect of mocapress; 128 + n ended by signal n (130: Ctrl-C).
     """
     _ = version, debug
 

@@ -63,7 +63,7 @@ def compress(
             "--level",
             min=1,
             max=9,
-            help="1 (fast) to 9 (small files); the same as --codec ID:level=N.",
+            help="1 (fast) to 9 (small files), also as -1 to -9; the same as --codec ID:level=N.",
         ),
     ] = None,
     model: Annotated[

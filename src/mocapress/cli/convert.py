@@ -25,13 +25,23 @@ if TYPE_CHECKING:
     from mocapress.source import Source
 
 
+def _formats(begun: str) -> list[str]:
+    """Give the formats that begin so, for completion in a shell."""
+    from mocapress.formats import writable
+
+    return [of.id for of in writable() if of.id.startswith(begun)]
+
+
 def convert(
     inputs: Inputs,
     output: Output = None,
     to: Annotated[
         str | None,
         typer.Option(
-            "--to", help="Format, e.g. bvh or amc; by default the output's suffix says it."
+            "--to",
+            help="Format, e.g. bvh or amc; by default the output's suffix says it. A GLB takes "
+            "options: glb:max=0.1cm,unit=cm.",
+            autocompletion=_formats,
         ),
     ] = None,
     asf: Asf = None,
@@ -52,7 +62,10 @@ def convert(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Convert between AMC, BVH, C3D and TRC, or write CSV, NPZ or Parquet; nothing is rescaled."""
+    """Convert between AMC, BVH, C3D, GLB and TRC, or write CSV, NPZ or Parquet.
+
+    Nothing is rescaled, but that a GLB has metres.
+    """
     from mocapress import api
     from mocapress.cli.batch import STREAM, find, run
     from mocapress.cli.models import open_models, places_for
@@ -74,7 +87,7 @@ def convert(
         return source.with_name(f"{kept}{made.suffixes[0]}")
 
     files = plan(
-        find(inputs, suffixes(of for of in readable() if of is not made)),
+        find(inputs, suffixes(of for of in readable() if of.id != made.id)),
         output,
         rename,
         force=force,
@@ -107,13 +120,14 @@ def convert(
 
 def _format(to: str | None, output: str | None) -> "Format":
     from mocapress.cli.batch import usage
-    from mocapress.formats import for_writing, writable
+    from mocapress.formats import configured, for_writing, writable
 
-    known = [of for of in writable() if to is None or of.id == to]
-    named = for_writing(output) if output else None
-    found = (known[0] if known else None) if to else named
-    if found is None or found not in known:
-        ids = ", ".join(of.id for of in writable())
+    known = {of.id: of for of in writable()}
+    if to and to.partition(":")[0] in known:
+        return configured(to)
+    found = for_writing(output) if output and not to else None
+    if found is None:
+        ids = ", ".join(known)
         usage(f"say what to convert to: --to ({ids}), or an output with the ending of one of these")
     return found
 

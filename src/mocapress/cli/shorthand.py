@@ -32,6 +32,8 @@ _MEANT = {
 """Options under another name; None is what happens anyway: inputs are kept, folders searched."""
 _WITH_VALUE = "ojT"
 """Short options behind which the rest of a word is their value."""
+_OF_ALL = ("-h", "--help", "-V", "--version", "--install-completion", "--show-completion")
+"""Options that need no command."""
 _SPELLED = ("compress", "decompress", "list", "verify")
 
 
@@ -48,7 +50,7 @@ def spelled(words: Sequence[str], is_command: Callable[[str], bool]) -> list[str
     """
     before = [*words[: next((at for at, word in enumerate(words) if word != "--debug"), None)]]
     rest = [*words[len(before) :]]
-    if not rest or rest[0] in ("-h", "--help", "-V", "--version"):
+    if not rest or rest[0] in _OF_ALL:
         return [*words]
     first, given = rest[0], ""
     if not (first.startswith("-") or "." in first or "/" in first):

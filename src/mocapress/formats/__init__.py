@@ -10,7 +10,7 @@ from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
 
-from mocapress.errors import UnsupportedError
+from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.formats.contract import Format, Split
 from mocapress.formats.encodings import head_as_utf8
 
@@ -19,6 +19,7 @@ __all__ = [
     "Split",
     "by_id",
     "by_name",
+    "configured",
     "for_writing",
     "formats",
     "listed",
@@ -30,7 +31,7 @@ __all__ = [
 
 GROUP = "mocapress.formats"
 # Modules whose ``FORMAT`` is asked in this order; an ASF can look like an AMC, too.
-_OWN = ("c3d", "npy", "npz", "bvh", "asf", "amc", "trc", "tables", "parquet")
+_OWN = ("c3d", "npy", "npz", "bvh", "asf", "amc", "trc", "tables", "parquet", "gltf")
 _HEAD = 2**16
 
 
@@ -67,8 +68,8 @@ def formats() -> tuple[Format, ...]:
 
 
 def readable() -> tuple[Format, ...]:
-    """Give the formats of motion that can be read and compressed."""
-    return tuple(made for made in _all() if made.split)
+    """Give the formats of motion that can be read."""
+    return tuple(made for made in _all() if made.split or made.read)
 
 
 def writable() -> tuple[Format, ...]:
@@ -95,6 +96,27 @@ def by_id(name: str) -> Format:
     return found
 
 
+def configured(text: str) -> Format:
+    """Give the format of an id with options of writing: ``glb`` or ``glb:max=0.1cm,unit=cm``.
+
+    Raises
+    ------
+    ParameterError
+        When it has no such option, or not with this value.
+    UnsupportedError
+        When there is no such format.
+
+    """
+    name, _, rest = text.partition(":")
+    found = by_id(name)
+    if not rest:
+        return found
+    if found.configured is None:
+        raise ParameterError(f"format {name} has no options", found=repr(rest))
+    parts = [item.partition("=") for item in rest.split(",")]
+    return found.configured({key: value for key, _, value in parts})
+
+
 def by_name(file: str) -> Format | None:
     """Tell a format from a file's name."""
     name = file.lower()
@@ -115,7 +137,7 @@ def recognise(data: bytes, file: str = "") -> Format | None:
     found = next((made for made in _all() if made.recognises(head)), None)
     if found is None:
         found = by_name(file)
-    return found if found and (found.split or found.read_skeleton) else None
+    return found if found and (found.split or found.read or found.read_skeleton) else None
 
 
 def suffixes(of: Iterable[Format]) -> tuple[str, ...]:

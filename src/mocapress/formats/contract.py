@@ -108,6 +108,9 @@ class Format:
     """Takes a file apart that is larger than is held at once, of the name given."""
     outline: Callable[[Ranges, str | None], LongSplit] | None = None
     """Does the same without looking at the frames; the layout does not print the file then."""
+    read: Callable[[bytes, Skeleton | None, str | None], Split] | None = None
+    """Reads motion out of a file that is no rows of numbers, and is compressed as any other file:
+    what it gives has no layout."""
     read_skeleton: Callable[[bytes, str | None], Skeleton] | None = None
     """Reads a file that holds a skeleton and no motion; the name is for messages."""
     fit: Callable[[Clip], Clip] = _as_it_is
@@ -121,6 +124,9 @@ class Format:
     describe: Callable[[Any, Clip, Near], Clip] | None = None
     """Gives streams as they are stored the names and units that such a layout knows, or a file
     beside. Raises ``FormatError`` where that file does not fit; it is then left away."""
+    configured: "Callable[[Mapping[str, str]], Format] | None" = None
+    """Gives the format with options of writing, such as ``{"max": "0.1cm"}``. Raises
+    ``ParameterError``."""
     written: tuple[str, ...] = ()
     """The suffixes that ``write`` is for, where it is not for all."""
     timed: bool = True

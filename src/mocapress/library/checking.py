@@ -12,6 +12,7 @@ from mocapress.container.limits import most_companions
 from mocapress.errors import CorruptError, LimitError, MissingModelError, MocapressError
 from mocapress.library.database import Database
 from mocapress.library.index import damaged as damaged_index
+from mocapress.library.needs import NEED_COLUMNS, Need
 from mocapress.library.opened import OpenedClip
 from mocapress.library.rows import RUN_COLUMNS, Connection, Run, hash_of
 from mocapress.library.stored import StoredMcz
@@ -22,6 +23,8 @@ _MOST_LINES = 20
 
 Places = dict[tuple[int, int], list[range]]
 """Frames of a stream of a clip, among those in its chunks."""
+Users = dict[tuple[int, bytes], list[range]]
+"""Frames of a clip's chunks that need the frames of a digest."""
 
 
 class Fault(NamedTuple):
@@ -96,13 +99,18 @@ def check(db: Database) -> Iterator[list[Fault]]:
         yield [*_integrity(connection)]
         damaged: Places = {}
         own: dict[tuple[int, int], int] = {}
+        users: Users = {}
         clips = [*survivors(connection)]
         for clip, name in clips:
             faults: list[Fault] = []
             with _collecting(faults, name):
-                faults += _read(db, clip, name, damaged, own)
+                faults += _read(db, clip, name, damaged, own, users)
             yield faults
         names = dict(clips)
+        faults = []
+        with _collecting(faults, ""):
+            faults += _needing(connection, names, damaged, users)
+        yield faults
         for clip, name in clips:
             faults = []
             with _collecting(faults, name):
@@ -135,7 +143,12 @@ def _integrity(connection: Connection) -> Iterator[Fault]:
 
 
 def _read(
-    db: Database, clip: int, name: str, damaged: Places, own: dict[tuple[int, int], int]
+    db: Database,
+    clip: int,
+    name: str,
+    damaged: Places,
+    own: dict[tuple[int, int], int],
+    users: Users,
 ) -> Iterator[Fault]:
     stored = StoredMcz(db, clip, salvage=True)
     if not stored.sound:
@@ -151,10 +164,38 @@ def _read(
         yield Fault(name, f"{where}: {error.what}")
     for entry in opened.mcz.entries:
         try:
-            opened.mcz.read_chunk(entry)
+            chunk = opened.mcz.read_chunk(entry)
+            for digest in chunk.needs:
+                users.setdefault((clip, digest), []).append(range(entry.first, entry.last))
         except MocapressError as error:
             yield Fault(name, error.what)
             damaged.setdefault((clip, entry.stream), []).append(range(entry.first, entry.last))
+
+
+def _needing(
+    connection: Connection, names: dict[int, str], damaged: Places, users: Users
+) -> Iterator[Fault]:
+    """Name the chunks that are predicted from damaged frames, and those predicted from these."""
+    if not users:  # libraries of version 1 have no such table
+        return
+    rows = connection.execute(f"SELECT clip, {NEED_COLUMNS} FROM needs").fetchall()  # noqa: S608
+    waiting = [(clip, Need(*row)) for clip, *row in rows if clip in names]
+    found = True
+    while found:
+        found, left = False, []
+        for clip, need in waiting:
+            begin, end = need.source_first, need.source_first + need.frames
+            lost = damaged.get((need.source, need.stream), [])
+            if not any(r.start < end and r.stop > begin for r in lost):
+                left.append((clip, need))
+                continue
+            found = True
+            other = names.get(need.source, f"of id {need.source}")
+            for frames in users.get((clip, need.digest), []):
+                damaged.setdefault((clip, need.stream), []).append(frames)
+                told = f"chunk of frames {frames.start} to {frames.stop - 1}"
+                yield Fault(names[clip], f"{told} needs frames of clip {other}, which is damaged")
+        waiting = left
 
 
 def _of_others(

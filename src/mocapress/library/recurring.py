@@ -35,6 +35,10 @@ class Recurrence:
     distance: float
     """Average of Eq. 2 over the pairs of frames, in weighted degrees."""
 
+    def __len__(self) -> int:
+        """Give how many frames resemble others."""
+        return self.frames.last + 1 - self.frames.first
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recurring:
@@ -63,7 +67,7 @@ class Recurring:
             frames = self.place(first, first + len(at) - 1)
             earlier = self.place(int(at[0]), int(at[-1]))
             pairs.append(Recurrence(frames, earlier, float(np.mean(distances))))
-        return sorted(pairs, key=lambda pair: pair.frames.first - pair.frames.last)
+        return sorted(pairs, key=len, reverse=True)
 
     def trees(self) -> list[list[tuple[Place, int]]]:
         """Give the trees of more than a root: each segment and its depth, breadth first."""

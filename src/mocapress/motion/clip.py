@@ -1,6 +1,6 @@
 """A clip: streams of numbers recorded together, with the skeleton that they move."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from fractions import Fraction
@@ -197,6 +197,49 @@ class Clip:
         for offer in entry_points(group="mocapress.display", name="html"):
             return str(offer.load()(self)) if self.frames else None
         return None
+
+    def contacts(
+        self,
+        joints: Sequence[str] | None = None,
+        *,
+        speed: float | None = None,
+        height: float | None = None,
+        fps: float | None = None,
+    ) -> dict[str, NDArray[np.bool_]]:
+        """Find the frames in which joints stand still on the floor.
+
+        A joint stands where it is slow, and hardly above its own lowest places. So the floor need
+        not be at height 0, but it has to be level: of stairs only the lowest step counts. Contacts
+        shorter than 0.05 s do not count, nor do such gaps. Up is y, or z where the figure is longer
+        along it and its lowest joint steadier.
+
+        Parameters
+        ----------
+        joints
+            Names of joints. By default those that are called foot, toe, ankle or heel.
+        speed
+            Length units a second up to which a joint stands; by default 0.15 of the figure's size.
+        height
+            Length units above its lowest places; by default 0.04 of the figure's size.
+        fps
+            Frames a second of a clip that does not state them.
+
+        Returns
+        -------
+        dict
+            By joint, (F,) bool.
+
+        Raises
+        ------
+        ParameterError
+            When there is no joint of a given name.
+        UnsupportedError
+            When the clip has no skeleton, no joint of a foot, bones that stretch, or no rate.
+
+        """
+        from mocapress.motion.contacts import contacts
+
+        return contacts(self, joints, speed=speed, height=height, fps=fps)
 
     @overload
     def __getitem__(self, key: slice) -> Self: ...

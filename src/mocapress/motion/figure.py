@@ -4,7 +4,12 @@ import numpy as np
 
 from mocapress.motion.clip import Clip
 from mocapress.motion.kinematics import Array, positions
-from mocapress.motion.units import named_unit, suggest_unit
+from mocapress.motion.units import (
+    centimetres_of,
+    centimetres_per_unit,
+    named_unit,
+    suggest_unit,
+)
 
 _LOOKED_AT = 200
 """Frames."""
@@ -18,12 +23,17 @@ def unit_of(clip: Clip) -> str | None:
     if clip.skeleton is None:
         return None
     found = suggest_unit(clip.skeleton)
-    places = None if found else _places(clip)
-    if places is None:
-        return found
-    # It stands upright, or stretches, at some time.
-    size = float(np.quantile(np.ptp(places, axis=1).max(axis=1), 0.95))
-    return named_unit(size, "in motion the figure measures")
+    size = None if found else _size(clip)
+    return found if size is None else named_unit(size, "in motion the figure measures")
+
+
+def centimetres(clip: Clip) -> float | None:
+    """Give the unit of lengths in centimetres, said or suggested as ``unit_of`` does."""
+    if clip.skeleton is None:
+        return None
+    found = centimetres_per_unit(clip.skeleton)
+    size = None if found else _size(clip)
+    return found if size is None else centimetres_of(size)
 
 
 def doubtful_root(clip: Clip) -> str | None:
@@ -48,6 +58,14 @@ def doubtful_root(clip: Clip) -> str | None:
                 f"{floor + offset:.4g}: its translation is probably relative to it"
             )
     return None
+
+
+def _size(clip: Clip) -> float | None:
+    """Give how long the figure is in motion: it stands upright, or stretches, at some time."""
+    places = _places(clip)
+    if places is None:
+        return None
+    return float(np.quantile(np.ptp(places, axis=1).max(axis=1), 0.95))
 
 
 def _places(clip: Clip) -> Array | None:

@@ -1,8 +1,19 @@
-"""How long the units of a skeleton are."""
+"""Lengths and angles with their units, and how long those of a skeleton are."""
+
+import re
+from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
+from mocapress.errors import ParameterError
 from mocapress.motion.skeleton import Skeleton
+
+LENGTHS = {"m": 100.0, "cm": 1.0, "mm": 0.1, "in": 2.54}
+"""Centimetres."""
+ANGLES = {"deg": 1.0, "rad": 180 / np.pi}
+"""Degrees."""
+_AMOUNT = re.compile(r"(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+(?:[eE][-+]?\d+)?)\s*([a-z]*)")
 
 CENTIMETRES_PER_INCH = 2.54
 CMU = CENTIMETRES_PER_INCH / 0.45
@@ -27,7 +38,7 @@ def suggest_unit(skeleton: Skeleton) -> str | None:
     """Say what unit the lengths of bones suggest, from the size of the figure at rest."""
     if skeleton.length_unit not in (None, 1.0):
         unit = CENTIMETRES_PER_INCH / skeleton.length_unit
-        return f"1 unit is {unit:.4g} cm, as the ASF's length says"
+        return f"1 unit is {unit:.4g} cm, as the file says"
     return named_unit(figure_size(skeleton), "the figure measures")
 
 
@@ -43,11 +54,43 @@ def centimetres_per_unit(skeleton: Skeleton) -> float | None:
     """Give the unit of lengths in centimetres, said or suggested; None where neither is."""
     if skeleton.length_unit not in (None, 1.0, 0.0):
         return CENTIMETRES_PER_INCH / skeleton.length_unit
-    size = figure_size(skeleton)
-    found = (unit for _, unit in (*_UNITS, ("", CMU)) if _is_figure(size * unit))
-    return next(found, None)
+    return centimetres_of(figure_size(skeleton))
+
+
+def centimetres_of(size: float) -> float | None:
+    """Give the unit in which a figure of such a size is a human one; None where there is none."""
+    return next((unit for _, unit in (*_UNITS, ("", CMU)) if _is_figure(size * unit)), None)
 
 
 def _is_figure(centimetres: float) -> bool:
     # At rest it is some 1.7 m high, or as wide with its arms out.
     return 130 <= centimetres <= 230
+
+
+@dataclass(frozen=True, slots=True)
+class Amount:
+    """A number with its unit, as it was written; ``unit`` may be empty."""
+
+    number: float
+    unit: str
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether it is an angle."""
+        return self.unit in ANGLES
+
+
+def amount(text: str, where: str) -> Amount:
+    """Read ``0.1cm``, ``0.05deg`` or ``0.02`` (units of the file).
+
+    Raises
+    ------
+    ParameterError
+        When it is no such amount above 0.
+
+    """
+    found = _AMOUNT.fullmatch(text.strip())
+    units = {"", *LENGTHS, *ANGLES}
+    if found and found[2] in units and 0 < float(found[1]) < inf:
+        return Amount(float(found[1]), found[2])
+    raise ParameterError(where, expected="an amount above 0, such as 0.1cm", found=repr(text))

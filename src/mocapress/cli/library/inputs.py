@@ -185,7 +185,7 @@ class Inputs:
         if known and not labels and not turned:
             return library.unchanged(name)
         source = job.opened()
-        if source.format is not None and source.format.split is None:
+        if source.format is not None and source.format.read_skeleton is not None:
             return library.add_companion(source, name)
         extra = Extra(modified_of(source), labels, beside=lambda: beside(source, name))
         return adder.file(source, name, extra, self.asf, again=turned)
@@ -228,7 +228,7 @@ class Inputs:
             return Used(chosen[0], chosen[1], lambda: chosen[2])
 
         source = Source(job.data, own, look)
-        if source.format is not None and source.format.split is None:
+        if source.format is not None and source.format.read_skeleton is not None:
             return library.add_companion(source, name, job.changed)
 
         def companions() -> Sequence[Beside]:

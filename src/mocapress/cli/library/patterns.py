@@ -9,9 +9,14 @@ from mocapress.cli.library.opening import File, Label, Patterns, chosen, opened
 from mocapress.cli.options import Debug, Json
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from mocapress.library import Library
     from mocapress.library.recurring import Recurring
 
 _MOST_LINES = 50
+_MOST_PLAYED = 3
+"""Pairs."""
 
 
 def patterns(
@@ -35,6 +40,12 @@ def patterns(
         typer.Option("--pictures", help="Draw paths and forest into this folder.", metavar="DIR"),
     ] = None,
     force: Annotated[bool, typer.Option("--force", "-f", help="Overwrite pictures.")] = False,
+    view: Annotated[
+        bool, typer.Option("--view", help="Play the longest pairs side by side in the browser.")
+    ] = False,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
+    ] = True,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
@@ -51,15 +62,39 @@ def patterns(
             from mocapress.cli.library.pattern_pictures import draw
 
             drawn = draw(found, pictures, force=force)
-    if json:
-        print(jsonlib.dumps([group.as_dict() for group in found], indent=1))
-        return
-    for group in found:
-        _show(group)
-    if not found:
-        print("no motion")
-    if pictures is not None:
-        print(*drawn, sep="\n")
+        if json:
+            print(jsonlib.dumps([group.as_dict() for group in found], indent=1))
+        else:
+            for group in found:
+                _show(group)
+            if not found:
+                print("no motion")
+            if pictures is not None:
+                print(*drawn, sep="\n")
+        if view:
+            _play(library, found, browser=browser)
+
+
+def _play(library: "Library", groups: "Sequence[Recurring]", *, browser: bool) -> None:
+    """Play the longest pairs, what resembles and what it resembles side by side."""
+    from mocapress.cli.batch import usage
+    from mocapress.cli.view import serve
+    from mocapress.viewer import embed, page
+    from mocapress.viewer.server import nothing
+
+    pairs = sorted((pair for group in groups for pair in group.pairs()), key=lambda p: -len(p))
+    if not pairs:
+        usage("nothing recurs in these clips; expected two that resemble each other")
+    content = [
+        embed.exact(
+            library.load(place.clip, slice(place.first, place.last + 1), strict=False),
+            str(place),
+            level=embed.FAST,
+        )
+        for pair in pairs[:_MOST_PLAYED]
+        for place in (pair.frames, pair.earlier)
+    ]
+    serve(page.document(content, "patterns", served=True), 0, browser=browser, more=nothing)
 
 
 def _show(group: "Recurring") -> None:

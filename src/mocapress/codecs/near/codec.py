@@ -21,10 +21,11 @@ from mocapress.codecs.contract import (
     Others,
 )
 from mocapress.codecs.near.encoding import Encoder
-from mocapress.codecs.near.goal import Goal, amount, goal_of
+from mocapress.codecs.near.goal import Goal, goal_of
 from mocapress.codecs.near.header import unpack_errors
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Skeleton, Stream
+from mocapress.motion.units import amount
 
 _MOST_FRAMES = 1 << 20
 _QUALITIES = range(1, 10)

@@ -1,20 +1,19 @@
 """What was asked of the errors, in the units of a clip."""
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, isfinite, radians
 
-import numpy as np
-
 from mocapress import _core
 from mocapress.errors import ParameterError
 from mocapress.motion import Column, Skeleton
-from mocapress.motion.units import centimetres_per_unit, figure_size
-
-_LENGTHS = {"m": 100.0, "cm": 1.0, "mm": 0.1, "in": 2.54}
-_ANGLES = {"deg": 1.0, "rad": 180 / np.pi}
-_AMOUNT = re.compile(r"(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+(?:[eE][-+]?\d+)?)\s*([a-z]*)")
+from mocapress.motion.units import (
+    ANGLES,
+    LENGTHS,
+    Amount,
+    centimetres_per_unit,
+    figure_size,
+)
 
 RADIUS = 3.0
 """Centimetres along the joints' axes at which errors are measured, as ACL does."""
@@ -25,35 +24,6 @@ MEAN_OF_MOST = 0.3
 """What mean error goes with a largest one, where none is asked for."""
 MOST_OF_PRECISION = 1.6
 """ACL's own largest error at a precision, at most times this."""
-
-
-@dataclass(frozen=True, slots=True)
-class Amount:
-    """A number with its unit, as it was written; ``unit`` may be empty."""
-
-    number: float
-    unit: str
-
-    @property
-    def is_angle(self) -> bool:
-        """Whether it is an angle."""
-        return self.unit in _ANGLES
-
-
-def amount(text: str, where: str) -> Amount:
-    """Read ``0.1cm``, ``0.05deg`` or ``0.02`` (units of the file).
-
-    Raises
-    ------
-    ParameterError
-        When it is no such amount above 0.
-
-    """
-    found = _AMOUNT.fullmatch(text.strip())
-    units = {"", *_LENGTHS, *_ANGLES}
-    if found and found[2] in units and 0 < float(found[1]) < inf:
-        return Amount(float(found[1]), found[2])
-    raise ParameterError(where, expected="an amount above 0, such as 0.1cm", found=repr(text))
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +73,7 @@ def goal_of(
         if not each.unit:
             return each.number
         if each.is_angle:
-            return each.number * _ANGLES[each.unit]
+            return each.number * ANGLES[each.unit]
         if unit is None:
             what = "a length" if in_space else "a length, for a clip without a skeleton,"
             raise ParameterError(
@@ -111,7 +81,7 @@ def goal_of(
                 expected="quality=1 to 9" if in_space else "degrees, such as max=0.1deg",
                 found=f"{each.number:g}{each.unit}",
             )
-        return each.number * _LENGTHS[each.unit] / unit
+        return each.number * LENGTHS[each.unit] / unit
 
     if not asked:
         # From 1 cm at 1 to 0.01 cm at 9, of a figure 1.7 m high; without one, degrees.

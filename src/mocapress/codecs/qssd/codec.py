@@ -22,6 +22,7 @@ from mocapress.codecs.contract import (
 )
 from mocapress.codecs.qssd.body import Body, body_of
 from mocapress.codecs.qssd.decomposition import MOST_ATOMS
+from mocapress.codecs.qssd.feet import protected
 from mocapress.codecs.qssd.training import Training
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Skeleton, Stream
@@ -62,6 +63,9 @@ class QSSD(Codec):
     """L: atoms of a frame."""
     max_error: float = inf
     """Largest error of any value, in the unit of its column; kept by corrections."""
+    protect: float = inf
+    """Largest distance of a foot's joints from where they were while they stand on the floor, in
+    the file's unit of lengths; kept by corrections of all channels above them."""
     chunk: int = 2048
     """Frames that are decoded together."""
     atoms: int = 0
@@ -88,6 +92,8 @@ class QSSD(Codec):
             self._refuse("step", "1e-6 to 1e6")
         if not self.max_error >= 0:
             self._refuse("max_error", "0 or more")
+        if not self.protect > 0:
+            self._refuse("protect", "above 0")
 
     def encode(
         self,
@@ -100,16 +106,33 @@ class QSSD(Codec):
         """Code a stream; ``(F, C)`` values, any float64; NaN and infinities stay as they are."""
         body = body_of(stream.columns, skeleton)
         learned = Training.of(model, body)
-        header = self.header(None if learned else self._own(body, stream))
-        payload = model.payload if model is not None and learned else b""
-        chunks = []
-        for first in range(0, stream.frames, self.chunk):
-            rows = np.ascontiguousarray(stream.values[first : first + self.chunk])
-            coded = _core.qssd_encode(
-                rows, header, payload, self.most, _ROUNDING, _REST_ROUNDING, self.max_error
-            )
-            chunks.append(Chunk(first, len(rows), coded))
-        return Encoded(header, tuple(chunks))
+        own = None if learned else self._own(body, stream)
+        used = model if learned else None
+
+        def code(limits: NDArray[np.float64], patch: float) -> Encoded:
+            header = self.header(own, patch)
+            payload = used.payload if used is not None else b""
+            chunks = []
+            for first in range(0, stream.frames, self.chunk):
+                rows = np.ascontiguousarray(stream.values[first : first + self.chunk])
+                most = np.ascontiguousarray(limits[first : first + self.chunk])
+                coded = _core.qssd_encode(
+                    rows, header, payload, self.most, _ROUNDING, _REST_ROUNDING, most
+                )
+                chunks.append(Chunk(first, len(rows), coded))
+            return Encoded(header, tuple(chunks))
+
+        limits = np.full(stream.values.shape, self.max_error)
+        if not isfinite(self.protect):
+            return code(limits, self.max_error)
+
+        def decoded(
+            limits: NDArray[np.float64], patch: float
+        ) -> tuple[Encoded, NDArray[np.float64]]:
+            made = code(limits, patch)
+            return made, self.decode(made.header, made.chunks, stream.columns, model=used)
+
+        return protected(stream, skeleton, self.protect, limits, decoded)
 
     def decode(
         self,
@@ -151,15 +174,18 @@ class QSSD(Codec):
             training.see(clip, self.chunk)
         return Model(self.id, training.model(_ROUNDING, _REST_ROUNDING))
 
-    def header(self, body: Body | None) -> bytes:
-        """Give the codec's header; with the body where no model has it."""
+    def header(self, body: Body | None, limit: float | None = None) -> bytes:
+        """Give the codec's header; with the body where no model has it.
+
+        ``limit`` is the finest to which errors are corrected, ``max_error`` by default.
+        """
+        limit = self.max_error if limit is None else limit
         writer = Writer()
         writer.integer(body is None)
         writer.integer(self.levels)
         writer.integer(self.omit)
         writer.double(self.step)
-        limited = 0 < self.max_error < inf
-        writer.double(_PATCH * self.max_error if limited else 0.0)
+        writer.double(_PATCH * limit if 0 < limit < inf else 0.0)
         return bytes(writer.data) + (b"" if body is None else body.pack())
 
     def _own(self, body: Body, stream: Stream) -> Body:

@@ -99,7 +99,7 @@ def _add(task: Adding, file: Listed, library: Library, add_file: Callable[..., A
         return Used(str(found[0]), found[1], lambda: task.source.read(str(found[0])))
 
     source = Source(task.source.read(file.name), file.name, look)
-    if source.format is not None and source.format.split is None:
+    if source.format is not None and source.format.read_skeleton is not None:
         library.add_companion(source, name, file.modified)
         return
 
