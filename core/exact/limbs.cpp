@@ -105,8 +105,7 @@ double Limbs::predict(std::size_t channel, const Frames& frames) {
   const std::size_t variable = known_ + channel - first_;
   const Block* told = predictions_.data() + limb_ / kLanes * most_ + variable;
   const double before = frames.level(channel, 1);
-  const double extrapolated =
-      plan_.order == 1 ? before : before + frames.difference(channel, 1, 1);
+  const double extrapolated = plan_.order == 1 ? before : before + frames.difference(channel, 1, 1);
   return extrapolated + reinterpret_cast<const double*>(told)[limb_ % kLanes];
 }
 

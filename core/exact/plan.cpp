@@ -41,8 +41,7 @@ void add_blocks(Plans& plans, std::size_t channels, double fading) {
 }
 
 // Every channel of the skeleton by its guess, and by guesses and channels before it in its limb.
-void add_guessed(Plans& plans, std::span<const Column> columns, int history,
-                 double fading) {
+void add_guessed(Plans& plans, std::span<const Column> columns, int history, double fading) {
   const auto limb = [&](std::size_t channel) {
     const int place = columns[channel].place;
     return place < 0 ? -1 : kCmu.channels[static_cast<std::size_t>(place)].limb;
