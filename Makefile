@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 CORPUS_SOURCE := ../shared/data
 SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -Icore
-FUZZ_RUNS ?= 20000
+FUZZ_RUNS ?= 5000
 JOBS := $(shell getconf _NPROCESSORS_ONLN)
 sources := $(wildcard core/*/*.cpp core/*/*.hpp)
 headers := $(filter %.hpp,$(sources)) $(wildcard core/exact/data/*)
@@ -144,18 +144,27 @@ check_clang_o0 := clang++ -O0 $(EXACT) $(ONE)
 check_aarch64 := aarch64-linux-gnu-g++ -O3 -static $(EXACT) $(ONE)
 check_windows := x86_64-w64-mingw32-g++-posix -O3 -static $(EXACT) $(ONE)
 # Not allowed; that it prints something else shows that the check sees it.
-check_contracted := $(CXX) -O3 -mavx2 -mfma $(EXACT) $(ONE) -ffp-contract=fast
+check_contracted := $(CXX) -O1 -mavx2 -mfma $(EXACT) $(ONE) -ffp-contract=fast
 
 # With the module's own flags, run by Node.
 check_wasm := $(ZIG) -O2 $(ONE)
 
-build/check/%: $(wildcard core/check/*) $(kernels) $(headers)
+# Objects, build/check/WAY/core/..., serve all codecs of a way.
+.SECONDEXPANSION:
+check_codec = $(basename $(*F))
+check_sources = core/check/$(check_codec).cpp core/coding/record.cpp core/motion/kinematics.cpp \
+    core/numbers/line.cpp core/numbers/powers.cpp core/numbers/text.cpp \
+    $(wildcard core/$(check_codec)/*.cpp core/$(check_codec)_*/*.cpp \
+    $(if $(filter mrpa,$(check_codec)),core/app/*.cpp))
+check_way = $(firstword $(subst /, ,$*))
+
+.PRECIOUS: build/check/%.o
+build/check/%.o: $(wildcard core/check/*) $(kernels) $(headers)
 	@mkdir -p $(@D)
-	$(check_$(*D)) core/check/$(basename $(*F)).cpp \
-	    $(wildcard core/$(basename $(*F))/*.cpp core/$(basename $(*F))_*/*.cpp \
-	    $(if $(filter mrpa,$(basename $(*F))),core/app/*.cpp)) \
-	    core/coding/record.cpp core/motion/kinematics.cpp core/numbers/line.cpp \
-	    core/numbers/powers.cpp core/numbers/text.cpp -o $@
+	$(check_$(check_way)) -c $(*:$(check_way)/%=%).cpp -o $@
+
+build/check/%: $$(addprefix build/check/$$(*D)/,$$(addsuffix .o,$$(basename $$(check_sources))))
+	$(check_$(*D)) $^ -o $@
 
 bench: $(VENV)/.built corpus
 	$(BIN)/mocapress bench lossless $(if $(wildcard corpus/.version),corpus/amc/cmu)

@@ -7,7 +7,6 @@ from typing import Annotated, Any
 import typer
 
 from mocapress_bench.inputs import (
-    Corpus,
     Debug,
     Force,
     Json,
@@ -43,6 +42,22 @@ TrainFrames = Annotated[
 ModelFile = Annotated[
     Path | None, typer.Option("--model", help="Also measure with this model.", metavar="FILE.mcm")
 ]
+Corpus = Annotated[
+    str | None,
+    typer.Argument(
+        help="Folder of clips; without it, the samples of a checkout. With --cluster also a URL, "
+        "or a sharded library."
+    ),
+]
+Cluster = Annotated[
+    str | None,
+    typer.Option(
+        "--cluster",
+        help="Measure on a Dask cluster, tcp://HOST:8786, or on N workers that are started here, "
+        "local:N. The memory is not measured then.",
+        metavar="CLUSTER",
+    ),
+]
 Repeat = Annotated[int, typer.Option("--repeat", min=1, help="Report the best of N runs.")]
 
 
@@ -56,16 +71,22 @@ def lossless(
     train_frames: TrainFrames = 40_000,
     model: ModelFile = None,
     repeat: Repeat = 1,
+    cluster: Cluster = None,
     force: Force = False,
     debug: Debug = False,  # noqa: ARG001
 ) -> None:
     """Compare every lossless codec with each other and with general-purpose tools."""
     from mocapress.errors import CorruptError, ParameterError
-    from mocapress.storage import write_whole
     from mocapress_bench import app_figures, learning, tables
     from mocapress_bench.lossless import measure, peak_memory
 
-    paths, root = clips_named(corpus)
+    if cluster is not None:
+        if folds or model or plots or corpus is None:
+            usage("--cluster needs a folder, and goes without --folds, --model and --plots")
+        rows, notes = _spread(corpus, cluster, only, repeat)
+        _report(rows, notes, {}, [], json, markdown, force=force)
+        return
+    paths, root = clips_named(None if corpus is None else Path(corpus))
     try:
         learned = learning.given(paths, only, model) if model else []
         if folds:
@@ -82,24 +103,53 @@ def lossless(
         )
     except (ParameterError, CorruptError, FileNotFoundError) as error:
         usage(str(error))
-    say(notes)
     if not rows:
+        say(notes)
         usage("none of the clips can be read")
     largest = max(paths, key=lambda path: path.stat().st_size)
     with_models = {one.name for one in learned}
     names = [name for name in tables.grouped(rows, "codec") if name not in with_models]
     memory = {name: peak_memory(largest, name)["peak_mb"] for name in names}
-    parts = [tables.totals(rows, memory), tables.by_group(rows)]
-    if len(paths) <= _FEW:
-        parts.append(tables.by_clip(rows))
-    if plots:
-        parts.append(app_figures.report(_figures(paths, rows, plots)))
+    more = [app_figures.report(_figures(paths, rows, plots))] if plots else []
+    _report(rows, notes, memory, more, json, markdown, force=force)
+
+
+def _spread(
+    corpus: str, cluster: str, only: str, repeat: int
+) -> tuple[list[dict[str, Any]], list[str]]:
+    from mocapress.errors import MocapressError
+    from mocapress_bench.cluster import spread
+
+    try:
+        return spread(corpus, cluster, only=only, repeat=repeat, progress=progress_line(0))
+    except (MocapressError, OSError) as error:
+        usage(str(error))
+
+
+def _report(
+    rows: list[dict[str, Any]],
+    notes: list[str],
+    memory: dict[str, float],
+    more: list[str],
+    json: Path | None,
+    markdown: Path | None,
+    *,
+    force: bool,
+) -> None:
+    """Print the tables and write what is asked for; end with 3 if something did not come back."""
+    from mocapress.storage import write_whole
+    from mocapress_bench import tables
+
+    say(notes)
+    few = len({row["clip"] for row in rows}) <= _FEW
+    clips = [tables.by_clip(rows)]
+    parts = [tables.totals(rows, memory), tables.by_group(rows), *(clips if few else []), *more]
     for part in parts:
         print(part)
     if json:
         write_whole(json, jsonlib.dumps(rows, indent=1).encode(), force=force)
     if markdown:
-        whole = parts if len(paths) <= _FEW else [*parts, tables.by_clip(rows)]
+        whole = parts if few else [*parts, *clips]
         write_whole(markdown, "\n".join(whole).encode(), force=force)
     if not all(row["exact"] for row in rows):
         say(["not everything was restored exactly"])

@@ -58,17 +58,22 @@ def of_places(
     )
 
 
+def joints_of(path: Path) -> tuple[list[str], Array]:
+    """Give names and positions, (F, J, 3) in mm, of the joints of an AMC."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", MotionWarning)
+        clip = mp.read(path)
+    assert clip.skeleton is not None
+    return [joint.name for joint in clip.skeleton.joints], positions(clip) * _MILLIMETRES
+
+
 def cmu(folder: Path, frames: int = CMU_FRAMES) -> MarkerSet:
     """Give the joint positions of a subject's AMC, in mm: the first frames in file-name order."""
     found: list[Array] = []
     labels: list[str] = []
     for path in sorted(folder.glob("*.amc")):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", MotionWarning)
-            clip = mp.read(path)
-        assert clip.skeleton is not None
-        labels = [joint.name for joint in clip.skeleton.joints]
-        found.append(positions(clip) * _MILLIMETRES)
+        labels, places = joints_of(path)
+        found.append(places)
         if sum(map(len, found)) >= frames:
             break
     sizes = [len(own) for own in found]
@@ -130,8 +135,12 @@ def of_codec(data: MarkerSet, text: int, spec: str, name: str = "") -> Row:
     end = time.process_time()
     header, payload = len(encoded.header), sum(len(chunk.payload) for chunk in encoded.chunks)
     frames = data.clip.frames
+    found = codec.measure(data.clip, encoded, text)
     return row_of(name or f"`{spec}`", data, text, decoded, header + payload) | {
-        "of which database": float(header),
+        "of which database": found["database_bytes"],
+        "lengths, indices": found["length_bytes"] + found["index_bytes"],
+        "places": found["place_bytes"],
+        "root": found["root_bytes"],
         "encode, s": middle - start,
         "decode, µs/frame": 1e6 * (end - middle) / frames,
     }

@@ -10,7 +10,8 @@ from mocapress_bench.contenders import Tool, contenders
 from mocapress_bench.rivals import Rival
 
 
-def _peak() -> float:
+def peak() -> float:
+    """Give the peak memory of this process, MB."""
     # Not getrusage: its maximum is handed down from the process that started this one.
     status = Path("/proc/self/status").read_text()
     found = re.search(r"VmHWM:\s*(\d+) kB", status)
@@ -26,7 +27,7 @@ def main(path: Path, name: str) -> None:
     """Code one file with one contender, both ways."""
     (contender,) = contenders(name)[0].values()
     data = path.read_bytes()
-    before = _peak()
+    before = peak()
     if isinstance(contender, Tool):
         contender.decompress(contender.compress(data))
     else:
@@ -38,7 +39,7 @@ def main(path: Path, name: str) -> None:
             encoded = contender.encode(clip.main, skeleton=clip.skeleton)
             values = contender.decode(encoded.header, encoded.chunks, clip.columns)
         layout.join(values)
-    print(before, _peak() + _peak_of_commands())
+    print(before, peak() + _peak_of_commands())
 
 
 if __name__ == "__main__":

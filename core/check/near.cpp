@@ -28,6 +28,7 @@ near::Plan plan_of() {
     plan.joints.of_column.push_back(static_cast<std::int32_t>(c / 3));
   }
   plan.joints.parents = {-1, 0, 1, 0};
+  plan.turnings = {{0, 5, 5, 2, true}, {3, 0, 3, 4, false}};
   return plan;
 }
 
@@ -36,7 +37,7 @@ class Writer {
  public:
   explicit Writer(std::uint64_t seed) : random_(seed) {}
 
-  mocapress::Bytes payload() {
+  mocapress::Bytes payload(const near::Plan& plan) {
     mocapress::Bit moves[2];
     mocapress::Difference<6> firsts;
     bool moved = true;
@@ -45,6 +46,7 @@ class Writer {
       firsts.code(side_, random_.around(100000));
       if (moved) coder_.channels.emplace_back().index = c;
     }
+    near::code_starts(side_, plan, {{}, {100, -50, 200}});
     int length = 0;
     for (std::size_t first = 0; first < kFrames; first += static_cast<std::size_t>(length)) {
       length = near::span_of(true, first, kFrames - first);
@@ -94,7 +96,7 @@ int main() {
   const near::Plan plan = plan_of();
   check::report("near, steps", plan.steps);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const auto payload = Writer(seed).payload();
+    const auto payload = Writer(seed).payload(plan);
     std::vector<double> decoded(kFrames * kChannels);
     near::decode(payload, decoded.data(), kFrames, plan);
     const std::string what = "near, numbers " + std::to_string(seed);

@@ -27,19 +27,23 @@ bool decodes(ByteView payload, std::vector<double>& values, std::size_t frames,
   return done([&] { near::decode(payload, values.data(), frames, plan); });
 }
 
-near::Plan plan_of(Input& input, std::size_t channels) {
+near::Plan plan_of(Input& input, std::size_t channels, bool turns) {
   near::Plan plan;
   for (std::size_t c = 0; c < channels; ++c) {
     plan.steps.push_back(near::step_of(static_cast<int>(input.below(64)) * 32 - 1024));
     plan.joints.of_column.push_back(static_cast<std::int32_t>(c));
     plan.joints.parents.push_back(static_cast<std::int32_t>(input.below(unsigned(c) + 1)) - 1);
   }
+  if (turns && channels > 2) {
+    const auto order = [&] { return static_cast<std::uint8_t>(input.below(6)); };
+    plan.turnings.push_back({channels - 3, order(), order(), order(), input.below(2) != 0});
+  }
   return plan;
 }
 
 void round_trip(Input input, std::size_t channels) {
   near::Task task;
-  task.plan = plan_of(input, channels);
+  task.plan = plan_of(input, channels, false);
   task.scale = 0.01;
   task.weights.assign(channels, 1.0);
   task.value_most.assign(channels, kMost);
@@ -59,7 +63,7 @@ void round_trip(Input input, std::size_t channels) {
   const std::size_t frames = channels > 0 ? values.size() / channels : 0;
   values.resize(frames * channels);
   if (frames == 0) return;
-  const near::Coded coded = near::encode(values.data(), frames, task, measure);
+  const near::Coded coded = near::encode(values.data(), frames, task, measure, measure);
   std::vector<double> decoded(values.size());
   if (!decodes(coded.payload, decoded, frames, task.plan)) std::abort();
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -90,7 +94,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t split = rest.empty() ? 0 : rest.front() % rest.size();
   near::Plan plan;
   const bool told = done([&] { plan = near::read_header(rest.first(split), channels); });
-  if (!told) plan = plan_of(input, channels);
+  if (!told) plan = plan_of(input, channels, true);
   std::vector<double> values(frames * channels);
   decodes(rest.subspan(split), values, frames, plan);
   return 0;

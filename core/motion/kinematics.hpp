@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "motion/skeleton.hpp"
@@ -45,6 +46,16 @@ class Rig {
   };
   // In the order of columns.
   std::vector<Action> actions() const;
+  // A turn of a joint; the first is the outermost.
+  struct Rotation {
+    std::size_t column;
+    std::size_t axis;
+  };
+  const std::vector<Rotation>& turns(std::size_t joint) const { return moves_[joint].turns; }
+  // Lets a joint turn otherwise than its format says.
+  void turn_by(std::size_t joint, std::vector<Rotation> turns) {
+    moves_[joint].turns = std::move(turns);
+  }
   // The directions of these in space, of a frame in which joints have these turns.
   void direct(const std::vector<Action>& actions, const double* row, const double* turns,
               Vector* directions) const;
@@ -55,10 +66,6 @@ class Rig {
   void place(const double* row, double* places, double* turns) const;
 
  private:
-  struct Rotation {
-    std::size_t column;
-    std::size_t axis;
-  };
   struct Move {
     std::int32_t parent = -1;
     Vector offset{};

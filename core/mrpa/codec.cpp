@@ -235,6 +235,24 @@ void decode(ByteView payload, double* values, const double* parents, std::span<c
   if (!side.exhausted()) fail("bytes are left over after the values");
 }
 
+std::vector<std::uint8_t> weights_of(const Rows& rows) {
+  const std::size_t frames = frames_of(rows.pieces);
+  Gathered column(frames, rows.columns.size());
+  std::vector<std::uint8_t> found;
+  for (std::size_t c = 0; c < rows.columns.size(); ++c) {
+    column.take_values(rows.values, c, rows.columns[c].precision);
+    column.take_parents(rows.parents, c);
+    app::with_type(rows.columns[c].precision, [&](auto zero) {
+      for_each_piece(column.values(), column.parents(), rows.pieces, [&](const Run& run) {
+        const Weights best = best_of<decltype(zero)>(run).weights;
+        found.push_back(static_cast<std::uint8_t>(best.alpha));
+        found.push_back(static_cast<std::uint8_t>(best.beta));
+      });
+    });
+  }
+  return found;
+}
+
 std::vector<double> estimated_bits(const Rows& rows) {
   const std::size_t frames = frames_of(rows.pieces);
   Gathered column(frames, rows.columns.size());

@@ -41,6 +41,9 @@ Bytes encode(const Rows& rows, int mantissa_limit, Choice choice);
 void decode(ByteView payload, double* values, const double* parents, std::span<const Piece> pieces,
             std::span<const app::Column> columns, int mantissa_limit);
 
+// What `Choice::best` takes: of each column and each piece alpha and beta, by their numbers.
+std::vector<std::uint8_t> weights_of(const Rows& rows);
+
 // About how many bits each piece takes without its parent and with it, by turns.
 std::vector<double> estimated_bits(const Rows& rows);
 

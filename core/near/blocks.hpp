@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "coding/bit.hpp"
+#include "near/turning.hpp"
 
 namespace mocapress::near {
 
@@ -59,6 +60,8 @@ struct Plan {
   double first = 1;   // what a coefficient of 1 stands for, in steps
   std::vector<double> steps;
   Joints joints;
+  std::vector<Turning> turnings;
+  bool radians = false;
 };
 
 // 2^(exponent / 64), for -4096 <= exponent <= 4096.

@@ -39,6 +39,7 @@ class Decoding {
         at(one.frame, channel) += times * part_of(plan_.steps[channel], one.fineness);
       }
     });
+    turn_back(values_, frames_, plan_, starts_);
     marks.kept({}, [&](std::size_t channel, std::size_t frame, double value) {
       at(frame, channel) = value;
     });
@@ -69,6 +70,7 @@ class Decoding {
       }
       if (!side_.sound()) fail("the payload is cut off");
     }
+    starts_ = code_starts(side_, plan_, {});
     prediction_ = prediction_of(coder_, plan_);
   }
 
@@ -110,6 +112,7 @@ class Decoding {
   Coder coder_;
   Prediction prediction_;
   std::array<double, kLongest> curve_{};
+  std::vector<Angles> starts_;
 };
 
 }  // namespace
@@ -125,11 +128,27 @@ Prediction prediction_of(const Coder& coder, const Plan& plan) {
   return {sources_of(plan.joints, columns), steps, firsts, plan.early ? 3.0 : 100.0};
 }
 
+void turn_back(double* values, std::size_t frames, const Plan& plan,
+               const std::vector<Angles>& starts) {
+  const std::size_t columns = plan.steps.size();
+  for (std::size_t t = 0; t < plan.turnings.size(); ++t) {
+    const Turning& turning = plan.turnings[t];
+    Angles last = starts[t];
+    for (std::size_t f = 0; f < frames; ++f) {
+      double* const own = values + f * columns + turning.first;
+      last = to_file(turning, plan.radians, {own[0], own[1], own[2]}, last);
+      std::copy_n(last.begin(), 3, own);
+    }
+  }
+}
+
 Plan read_header(ByteView header, std::size_t columns) {
   Record record(header);
   Plan plan;
   record.numbers(2);  // how far the clip was found to be off: for readers, not for decoding
-  plan.early = record.integer(3) < 2;
+  const std::int64_t flags = record.integer(7);
+  plan.early = (flags & 2) == 0;
+  plan.radians = (flags & 4) != 0;
   plan.knot = static_cast<double>(record.integer(63) + 1) / 8;
   plan.first = static_cast<double>(record.integer(63) + 1) / 64;
   const std::int64_t base = record.signed_integer();
@@ -138,7 +157,7 @@ Plan read_header(ByteView header, std::size_t columns) {
   record.end();
   std::vector<std::int64_t> apart(columns);
   plan.joints.of_column.resize(columns);
-  code_columns(side, apart, plan.joints);
+  code_columns(side, apart, plan.joints, plan.turnings);
   if (!side.exhausted()) fail("what columns have of their own is cut off, too long, or cannot be");
   std::int64_t exponent = base;
   for (const std::int64_t each : apart) {

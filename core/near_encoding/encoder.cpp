@@ -21,17 +21,24 @@ constexpr double kMostSteps = 1e8;
 
 class Encoding {
  public:
-  Encoding(const double* values, std::size_t frames, const Task& task, const Measure& measure)
+  Encoding(const double* values, std::size_t frames, const Task& task, const Measure& measure,
+           const Measure& curves)
       : given_(values),
         frames_(frames),
         channels_(task.plan.steps.size()),
         task_(task),
-        measure_(measure),
-        wanted_(values, values + frames * channels_),
+        measure_(curves),
+        file_measure_(measure),
+        whole_(values, values + frames * channels_),
         raised_(frames * channels_, 1.0F),
         moves_(channels_),
         steps_(task.plan.steps) {
     fill_gaps();
+    wanted_ = turned(whole_, task.plan);
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+      const std::size_t c = i % channels_;
+      moves_[c] = moves_[c] || wanted_[i] != wanted_[c];
+    }
     weigh();
   }
 
@@ -39,6 +46,7 @@ class Encoding {
     curves();
     for (int round = 0; round < task_.rounds && raise(round); ++round) curves();
     const auto corrections = correct();
+    turn_back(drawn_.data(), frames_, task_.plan, starts_);
     const auto kept = keep();
     Marks marks(side_, frames_, channels_);
     marks.corrections(corrections, [](const Correction&) {});
@@ -47,18 +55,18 @@ class Encoding {
     coded.payload = side_.finish();
     coded.values.resize(frames_ * channels_);
     decode(coded.payload, coded.values.data(), frames_, task_.plan);
-    const std::size_t points = measure_.points(channels_);
+    const std::size_t points = file_measure_.points(channels_);
     coded.errors.resize(frames_ * points);
     drawn_ = coded.values;
     for (const Kept& one : kept) {
       for (std::size_t k = 0; k < one.bits.size(); ++k) {
         const std::size_t at = (one.first + k) * channels_ + one.channel;
-        drawn_[at] = wanted_[at];
+        drawn_[at] = whole_[at];
       }
     }
     for (std::size_t f = 0; f < frames_; ++f) {
-      measure_.errors(&wanted_[f * channels_], &drawn_[f * channels_], channels_,
-                      &coded.errors[f * points]);
+      file_measure_.errors(&whole_[f * channels_], &drawn_[f * channels_], channels_,
+                           &coded.errors[f * points]);
     }
     return coded;
   }
@@ -70,14 +78,12 @@ class Encoding {
       const auto usable = [&](double value) { return std::fabs(value) <= kMostSteps * steps_[c]; };
       double last = 0;
       for (std::size_t f = frames_; f-- > 0;) {
-        if (usable(wanted_[f * channels_ + c])) last = wanted_[f * channels_ + c];
+        if (usable(whole_[f * channels_ + c])) last = whole_[f * channels_ + c];
       }
-      const double start = last;
       for (std::size_t f = 0; f < frames_; ++f) {
-        double& value = wanted_[f * channels_ + c];
+        double& value = whole_[f * channels_ + c];
         if (!usable(value)) value = last;
         last = value;
-        moves_[c] = moves_[c] || value != start;
       }
     }
   }
@@ -121,7 +127,7 @@ class Encoding {
 
   // Whether the curves have another number in place of what was given.
   bool is_replaced(std::size_t i) const {
-    return std::bit_cast<std::uint64_t>(given_[i]) != std::bit_cast<std::uint64_t>(wanted_[i]);
+    return std::bit_cast<std::uint64_t>(given_[i]) != std::bit_cast<std::uint64_t>(whole_[i]);
   }
 
   void begin() {
@@ -142,6 +148,12 @@ class Encoding {
         for (std::size_t f = 0; f < frames_; ++f) drawn_[f * channels_ + c] = value;
       }
     }
+    std::vector<Angles> starts;
+    for (const Turning& turning : task_.plan.turnings) {
+      const double* const own = whole_.data() + turning.first;
+      starts.push_back({own[0], own[1], own[2]});
+    }
+    starts_ = code_starts(side_, task_.plan, starts);
     prediction_ = prediction_of(coder_, task_.plan);
   }
 
@@ -209,11 +221,11 @@ class Encoding {
 
   // By how much each point of each frame is beyond its bound, as a ratio; whether any is.
   template <class Each>
-  bool beyond(Each&& each) const {
-    std::vector<double> errors(measure_.points(channels_));
+  bool beyond(const Measure& measure, const std::vector<double>& wanted, Each&& each) const {
+    std::vector<double> errors(measure.points(channels_));
     bool any = false;
     for (std::size_t f = 0; f < frames_; ++f) {
-      measure_.errors(&wanted_[f * channels_], &drawn_[f * channels_], channels_, errors.data());
+      measure.errors(&wanted[f * channels_], &drawn_[f * channels_], channels_, errors.data());
       for (std::size_t p = 0; p < errors.size(); ++p) {
         const double most = bound_of(p);
         if (errors[p] <= most) continue;
@@ -227,7 +239,7 @@ class Encoding {
   // Makes errors costlier in channels that move what is beyond its bound, around its frame.
   bool raise(int round) {
     std::vector<float> times(raised_.size(), 1.0F);
-    const bool any = beyond([&](std::size_t frame, std::size_t point, double ratio) {
+    const auto costlier = [&](std::size_t frame, std::size_t point, double ratio) {
       const auto by = static_cast<float>(std::min(4.0, 1.6 * ratio * ratio));
       for (const std::size_t c : movers(point, round < 2 ? 3 : channels_)) {
         for (std::size_t f = frame - std::min<std::size_t>(frame, 3);
@@ -236,7 +248,8 @@ class Encoding {
           own = std::max(own, by);
         }
       }
-    });
+    };
+    const bool any = beyond(measure_, wanted_, costlier);
     for (std::size_t i = 0; i < times.size(); ++i)
       raised_[i] = std::min(raised_[i] * times[i], 3e4F);
     return any;
@@ -263,7 +276,8 @@ class Encoding {
   // Of each frame that is beyond a bound, corrections that bring it back.
   std::vector<Correction> correct() {
     std::vector<std::vector<std::size_t>> points(frames_);
-    beyond([&](std::size_t frame, std::size_t point, double) { points[frame].push_back(point); });
+    beyond(measure_, wanted_,
+           [&](std::size_t frame, std::size_t point, double) { points[frame].push_back(point); });
     std::vector<Correction> corrections;
     for (std::size_t f = 0; f < frames_; ++f) {
       if (points[f].empty()) continue;
@@ -324,7 +338,7 @@ class Encoding {
       const double error = std::fabs(given_[i] - drawn_[i]);
       keeps[i] = is_replaced(i) || !(error <= task_.value_most[i % channels_]);
     }
-    beyond([&](std::size_t frame, std::size_t, double) {
+    beyond(file_measure_, whole_, [&](std::size_t frame, std::size_t, double) {
       std::fill_n(&keeps[frame * channels_], channels_, 1);
     });
     std::vector<Kept> kept;
@@ -342,9 +356,11 @@ class Encoding {
   const double* given_;
   std::size_t frames_, channels_;
   const Task& task_;
-  const Measure& measure_;
-  std::vector<double> wanted_;  // what the curves are to be
-  std::vector<float> raised_;   // how much more errors cost
+  const Measure& measure_;       // of the curves
+  const Measure& file_measure_;  // of the values
+  std::vector<double> whole_;    // what is to be decoded, without gaps
+  std::vector<double> wanted_;   // what the curves are to be
+  std::vector<float> raised_;    // how much more errors cost
   std::vector<bool> moves_;
   const std::vector<double>& steps_;
   std::vector<double> costs_;
@@ -356,13 +372,28 @@ class Encoding {
   Coder coder_;
   Prediction prediction_;
   std::vector<double> drawn_;
+  std::vector<Angles> starts_;
   mutable std::vector<std::vector<std::size_t>> by_joint_;
 };
 
 }  // namespace
 
-Coded encode(const double* values, std::size_t frames, const Task& task, const Measure& measure) {
-  return Encoding(values, frames, task, measure).run();
+Coded encode(const double* values, std::size_t frames, const Task& task, const Measure& measure,
+             const Measure& curves) {
+  return Encoding(values, frames, task, measure, curves).run();
+}
+
+std::vector<double> turned(std::vector<double> values, const Plan& plan) {
+  const std::size_t columns = plan.steps.size();
+  for (const Turning& turning : plan.turnings) {
+    Angles last{};
+    for (std::size_t f = 0; f * columns < values.size(); ++f) {
+      double* const own = &values[f * columns + turning.first];
+      last = to_curves(turning, plan.radians, {own[0], own[1], own[2]}, last);
+      std::copy_n(last.begin(), 3, own);
+    }
+  }
+  return values;
 }
 
 }  // namespace mocapress::near

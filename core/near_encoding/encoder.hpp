@@ -30,6 +30,11 @@ struct Coded {
 
 // Codes frames x plan.steps.size() values, row by row: any values. What is no finite number comes
 // back as it is, and what would be beyond a bound is kept.
-Coded encode(const double* values, std::size_t frames, const Task& task, const Measure& measure);
+// `curves` measures the channels as the curves turn them, `measure` as the values do.
+Coded encode(const double* values, std::size_t frames, const Task& task, const Measure& measure,
+             const Measure& curves);
+
+// What the curves of these values are to be, row by row.
+std::vector<double> turned(std::vector<double> values, const Plan& plan);
 
 }  // namespace mocapress::near

@@ -39,6 +39,7 @@ class Chunk {
         given_(given) {}
 
   void code() {
+    enter(Part::tracks);
     for (std::size_t c = 0; c < columns_; ++c) {
       if (plan_.roles[c] == Role::track) code_track(c, plan_.track);
       if (plan_.roles[c] == Role::protected_track) code_track(c, plan_.protected_track);
@@ -54,10 +55,16 @@ class Chunk {
       if (plan_.roles[c] != Role::copy) continue;
       for (std::size_t t = 0; t < frames_; ++t) at(t, c) = at(t, plan_.references[c]);
     }
+    enter(Part::corrections);
     code_corrections();
   }
 
  private:
+  // What is coded from here on, for a side that counts.
+  void enter(Part part) {
+    if constexpr (requires { side_.enter(part); }) side_.enter(part);
+  }
+
   double& at(std::size_t frame, std::size_t column) { return values_[frame * columns_ + column]; }
 
   void check() {
@@ -141,14 +148,17 @@ class Chunk {
     std::size_t begin = 0;
     for (std::size_t s = 0; begin < frames_; ++s) {
       std::size_t size = Side::kReading ? 0 : given_->segments[index].frames[s] - 1;
+      enter(Part::lengths);
       size = lengths_.count(side_, length, size);
       if (size >= frames_ - begin) fail("a segment of more frames than are left");
       ++size;
       std::size_t own = Side::kReading ? 0 : given_->segments[index].patterns[s];
+      enter(Part::indices);
       if (node.patterns > 1) own = patterns_.count(side_, pattern, own);
       if (own >= node.patterns) fail("a pattern that the database lacks");
       shape_of(plan_, index, own, shape.data());
       stretch(shape.data(), node.frames, moved.data() + begin * count, size, count);
+      enter(Part::places);
       if (plan_.apart) {
         const double step = plan_.place / node.importance;
         for (std::size_t j = 0; j < count; ++j) {
@@ -341,6 +351,38 @@ class Chunk {
   Numbers counts_, terms_, lengths_, patterns_, places_;
 };
 
+// Reads, and counts the bits of each part.
+class Counting {
+ public:
+  static constexpr bool kReading = true;
+
+  explicit Counting(ByteView payload) : side_(payload) {}
+
+  void enter(Part part) { part_ = static_cast<std::size_t>(part); }
+  bool chance(std::uint32_t zero, bool ignored) {
+    const bool one = side_.chance(zero, ignored);
+    bits_[part_] -= std::log2((one ? 65536 - zero : zero) / 65536.0);
+    return one;
+  }
+  bool bit(Bit& model, bool ignored) {
+    const std::uint32_t zero = model.chance_of_zero();
+    const bool one = side_.bit(model, ignored);
+    bits_[part_] -= std::log2((one ? 65536 - zero : zero) / 65536.0);
+    return one;
+  }
+  std::uint64_t raw(int count, std::uint64_t ignored) {
+    bits_[part_] += count;
+    return side_.raw(count, ignored);
+  }
+  bool sound() const { return side_.sound(); }
+  const std::array<double, kParts>& bits() const { return bits_; }
+
+ private:
+  RangeReading side_;
+  std::array<double, kParts> bits_{};
+  std::size_t part_ = 0;
+};
+
 }  // namespace
 
 void decode(ByteView payload, double* values, std::size_t frames, const Plan& plan) {
@@ -348,6 +390,14 @@ void decode(ByteView payload, double* values, std::size_t frames, const Plan& pl
   Chunk chunk(side, plan, frames, values, nullptr);
   chunk.code();
   if (!side.exhausted()) fail("a payload that does not end where it should");
+}
+
+std::array<double, kParts> bits_of(ByteView payload, std::size_t frames, const Plan& plan) {
+  Counting side(payload);
+  std::vector<double> values(frames * plan.roles.size());
+  Chunk chunk(side, plan, frames, values.data(), nullptr);
+  chunk.code();
+  return side.bits();
 }
 
 Bytes encode(const Given& given, std::size_t frames, const Plan& plan) {

@@ -2,6 +2,7 @@
 // coded as they are (docs/format/patterns.md).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,6 +15,14 @@ namespace mocapress::patterns {
 
 // Fills frames x columns values.
 void decode(ByteView payload, double* values, std::size_t frames, const Plan& plan);
+
+// What a chunk is made of: the root and protected columns; of segments how long they are, their
+// patterns and their places; corrections.
+enum class Part : std::uint8_t { tracks, lengths, indices, places, corrections };
+inline constexpr std::size_t kParts = 5;
+
+// The bits that each part of a chunk takes.
+std::array<double, kParts> bits_of(ByteView payload, std::size_t frames, const Plan& plan);
 
 // How the frames of a chunk are cut for a node, and what pattern each segment follows.
 struct Segments {

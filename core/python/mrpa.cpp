@@ -72,6 +72,16 @@ std::vector<double> estimated_bits(const Input<double, 2>& values, const Input<d
   return mrpa::estimated_bits({values.data(), parents.data(), pieces, columns});
 }
 
+std::vector<std::uint8_t> weights_of(const Input<double, 2>& values,
+                                     const Input<double, 2>& parents, const PieceTable& table,
+                                     const FloatPlan& plan) {
+  check_parents(values, parents);
+  const auto columns = float_columns(plan, values.shape(1));
+  const auto pieces = pieces_of(table, values.shape(0));
+  nb::gil_scoped_release unlocked;
+  return mrpa::weights_of({values.data(), parents.data(), pieces, columns});
+}
+
 auto grow(const Input<std::int64_t, 1>& starts, const Input<std::int32_t, 1>& matches,
           const Input<float, 1>& distances, const Input<std::int32_t, 1>& clips,
           std::int32_t least_depth, bool deepest) {
@@ -120,6 +130,8 @@ void bind_mrpa(nb::module_& module) {
              "``choice``: see core/mrpa/codec.hpp; the plan is that of ``app_encode``.");
   module.def("mrpa_decode", &decode, nb::arg("payload"), nb::arg("values").noconvert(), parents,
              pieces, plan, limit, "Fill ``values`` from a chunk; ValueError where it is none.");
+  module.def("mrpa_weights", &weights_of, values, parents, pieces, plan,
+             "Give the numbers of alpha and beta that are best, for each piece of each column.");
   module.def("mrpa_estimated_bits", &estimated_bits, values, parents, pieces, plan,
              "Give about how many bits each piece takes without its parent and with it, by turns.");
   module.def("mrpa_grow", &grow, nb::arg("starts"), nb::arg("matches"), nb::arg("distances"),

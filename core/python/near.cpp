@@ -1,9 +1,12 @@
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <stdexcept>
 
 #include "coding/sides.hpp"
@@ -84,9 +87,9 @@ Given<double, 2> errors(const near::Measure& measure, const Input<double, 2>& va
 }
 
 std::tuple<nb::bytes, Given<double, 2>, Given<double, 2>> encode(
-    const near::Measure& measure, const Input<double, 2>& values, const nb::bytes& header,
-    double scale, double rate, const Input<double, 1>& weights, double most,
-    const Input<double, 1>& value_most, int rounds) {
+    const near::Measure& measure, const near::Measure& curves, const Input<double, 2>& values,
+    const nb::bytes& header, double scale, double rate, const Input<double, 1>& weights,
+    double most, const Input<double, 1>& value_most, int rounds) {
   const std::size_t frames = values.shape(0), channels = values.shape(1);
   const near::Task task{near::read_header(view(header), channels),
                         scale,
@@ -98,16 +101,134 @@ std::tuple<nb::bytes, Given<double, 2>, Given<double, 2>> encode(
   near::Coded coded;
   {
     const nb::gil_scoped_release unlocked;
-    coded = near::encode(values.data(), frames, task, measure);
+    coded = near::encode(values.data(), frames, task, measure, curves);
   }
   const std::size_t points = measure.points(channels);
   return {to_python(coded.payload), give(std::move(coded.values), std::array{frames, channels}),
           give(std::move(coded.errors), std::array{frames, points})};
 }
 
+// Of each: its first column; the orders of the file's columns and axes, and of the curves' axes;
+// whether the file's angles are the nearest to zero.
+std::vector<near::Turning> turnings_of(const std::vector<std::array<int, 5>>& told) {
+  std::vector<near::Turning> found;
+  for (const auto& [first, columns, axes, curves, nearest] : told) {
+    if (first < 0 || std::min({columns, axes, curves}) < 0 ||
+        std::max({columns, axes, curves}) > 5) {
+      throw std::invalid_argument("no order of three turns");
+    }
+    found.push_back({static_cast<std::size_t>(first), static_cast<std::uint8_t>(columns),
+                     static_cast<std::uint8_t>(axes), static_cast<std::uint8_t>(curves),
+                     nearest != 0});
+  }
+  return found;
+}
+
+// The joints whose last columns are three angles about different axes, as turnings that keep the
+// file's order.
+std::vector<std::array<int, 5>> turnable(const near::Measure& measure, const Columns& columns) {
+  std::vector<std::array<int, 5>> found;
+  if (!measure.rig) return found;
+  const Rig& rig = *measure.rig;
+  const auto order_of = [](const near::Order& order) {
+    const auto* const at = std::find(near::kOrders.begin(), near::kOrders.end(), order);
+    return static_cast<int>(at - near::kOrders.begin());
+  };
+  for (std::size_t j = 0; j < rig.joints(); ++j) {
+    const auto& turns = rig.turns(j);
+    if (turns.size() != 3) continue;
+    std::size_t first = turns[0].column;
+    for (const auto& turn : turns) first = std::min(first, turn.column);
+    near::Order places{}, axes{};
+    std::size_t furthest = first;
+    for (std::size_t i = 0; i < 3; ++i) {
+      furthest = std::max(furthest, turns[i].column);
+      places[i] = static_cast<std::uint8_t>(turns[i].column - first);
+      axes[i] = static_cast<std::uint8_t>(turns[i].axis);
+    }
+    const bool last =
+        furthest + 1 == columns.size() || columns[furthest + 1].first != columns[furthest].first;
+    if (furthest != first + 2 || !last || order_of(places) > 5 || order_of(axes) > 5) continue;
+    found.push_back({static_cast<int>(first), order_of(places), order_of(axes), order_of(axes), 0});
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+// The same measure of channels as curves turn them.
+near::Measure turned_measure(const near::Measure& measure,
+                             const std::vector<std::array<int, 5>>& told) {
+  near::Measure turned = measure;
+  if (!measure.rig) return turned;
+  Rig rig = *measure.rig;
+  for (const near::Turning& turning : turnings_of(told)) {
+    const auto& axes = near::kOrders[turning.curves];
+    for (std::size_t j = 0; j < rig.joints(); ++j) {
+      const auto& turns = rig.turns(j);
+      const bool own = std::any_of(turns.begin(), turns.end(),
+                                   [&](const auto& turn) { return turn.column == turning.first; });
+      if (!own) continue;
+      rig.turn_by(
+          j,
+          {{turning.first, axes[0]}, {turning.first + 1, axes[1]}, {turning.first + 2, axes[2]}});
+    }
+  }
+  turned.rig = std::make_shared<Rig>(std::move(rig));
+  return turned;
+}
+
+near::Plan plan_of(const std::vector<std::array<int, 5>>& told, std::size_t channels,
+                   bool radians) {
+  near::Plan plan;
+  plan.turnings = turnings_of(told);
+  plan.radians = radians;
+  plan.steps.resize(channels);
+  for (const near::Turning& turning : plan.turnings) {
+    if (turning.first + 3 > channels) throw std::invalid_argument("turns of other columns");
+  }
+  return plan;
+}
+
+Given<double, 2> turned_values(const near::Measure& measure, const Input<double, 2>& values,
+                               const std::vector<std::array<int, 5>>& told) {
+  const std::size_t frames = values.shape(0), channels = values.shape(1);
+  const near::Plan plan = plan_of(told, channels, measure.radians);
+  return give(near::turned({values.data(), values.data() + frames * channels}, plan),
+              std::array{frames, channels});
+}
+
+// In how many frames each turning gives other angles back than the file's, if of the same turn.
+std::vector<std::size_t> unlike(const near::Measure& measure, const Input<double, 2>& values,
+                                const std::vector<std::array<int, 5>>& told) {
+  const std::size_t frames = values.shape(0), channels = values.shape(1);
+  const near::Plan plan = plan_of(told, channels, measure.radians);
+  const double* const given = values.data();
+  std::vector<double> back = near::turned({given, given + frames * channels}, plan);
+  std::vector<near::Angles> starts;
+  for (const near::Turning& turning : plan.turnings) {
+    near::Angles& start = starts.emplace_back();
+    if (frames > 0) std::copy_n(given + turning.first, 3, start.begin());
+  }
+  near::turn_back(back.data(), frames, plan, starts);
+  std::vector<std::size_t> found;
+  for (const near::Turning& turning : plan.turnings) {
+    std::size_t count = 0;
+    for (std::size_t f = 0; f < frames; ++f) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t at = f * channels + turning.first + i;
+        if (std::fabs(back[at] - given[at]) > (measure.radians ? 3.0 : 180.0)) ++count;
+      }
+    }
+    found.push_back(count);
+  }
+  return found;
+}
+
 nb::bytes columns(std::vector<std::int64_t> apart, std::vector<std::int32_t> joints,
-                  std::vector<std::int32_t> parents) {
+                  std::vector<std::int32_t> parents,
+                  const std::vector<std::array<int, 5>>& turned) {
   RangeWriting side;
+  std::vector<near::Turning> turnings = turnings_of(turned);
   near::Joints told{std::move(joints), std::move(parents)};
   if (told.of_column.size() != apart.size()) throw std::invalid_argument("other columns");
   for (std::size_t c = 0; c < apart.size(); ++c) {
@@ -118,7 +239,7 @@ nb::bytes columns(std::vector<std::int64_t> apart, std::vector<std::int32_t> joi
       throw std::invalid_argument("joints that are not counted as columns tell them");
     }
   }
-  near::code_columns(side, apart, told);
+  near::code_columns(side, apart, told, turnings);
   return to_python(side.finish());
 }
 
@@ -143,10 +264,19 @@ void bind_near(nb::module_& module) {
   module.def("near_errors", &errors, nb::arg("measure"), nb::arg("values"), nb::arg("others"),
              "Give the errors of joints, (F, J), or without a skeleton of values, (F, C).");
   module.def("near_columns", &columns, nb::arg("apart"), nb::arg("joints"), nb::arg("parents"),
-             "Code what columns have of their own, for the header.");
-  module.def("near_encode", &encode, nb::arg("measure"), nb::arg("values"), nb::arg("header"),
-             nb::arg("scale"), nb::arg("rate"), nb::arg("weights"), nb::arg("most"),
-             nb::arg("value_most"), nb::arg("rounds"),
+             nb::arg("turnings"), "Code what columns have of their own, for the header.");
+  module.def("near_turnable", &turnable, nb::arg("measure"), nb::arg("columns"),
+             "Give the joints that end in three angles: first column, the orders of the file's\n"
+             "columns and axes, and of the curves' axes, and whether angles are nearest to zero.");
+  module.def("near_turned_measure", &turned_measure, nb::arg("measure"), nb::arg("turnings"),
+             "Give the measure of channels as curves turn them.");
+  module.def("near_turned", &turned_values, nb::arg("measure"), nb::arg("values"),
+             nb::arg("turnings"), "Give the values by which curves turn.");
+  module.def("near_unlike", &unlike, nb::arg("measure"), nb::arg("values"), nb::arg("turnings"),
+             "Count for each turning the values that come back as other angles of the same turn.");
+  module.def("near_encode", &encode, nb::arg("measure"), nb::arg("curves"), nb::arg("values"),
+             nb::arg("header"), nb::arg("scale"), nb::arg("rate"), nb::arg("weights"),
+             nb::arg("most"), nb::arg("value_most"), nb::arg("rounds"),
              "Code rows as a chunk: its payload, the values that it decodes to, and the errors of\n"
              "joints, (F, J), or without a skeleton of values, (F, C).");
   module.def("near_decode", &decode, nb::arg("header"), nb::arg("payload"),

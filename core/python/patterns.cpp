@@ -1,4 +1,5 @@
 // Python's view of the codec `patterns`.
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
@@ -146,6 +147,13 @@ void decode(const nb::bytes& payload, const Output<double, 2>& values, const nb:
   pt::decode(coded, values.data(), values.shape(0), plan);
 }
 
+std::array<double, pt::kParts> bits(const nb::bytes& payload, std::size_t frames,
+                                    std::size_t columns, const nb::bytes& header,
+                                    const nb::bytes& model) {
+  const auto plan = pt::read_plan(view(header), view(model), columns);
+  return pt::bits_of(view(payload), frames, plan);
+}
+
 }  // namespace
 
 void bind_patterns(nb::module_& module) {
@@ -165,6 +173,9 @@ void bind_patterns(nb::module_& module) {
              "Code rows of values as a chunk: core/patterns/codec.hpp.");
   module.def("patterns_decode", &decode, nb::arg("payload"), nb::arg("values").noconvert(), header,
              model, "Fill ``values`` from a chunk; ValueError where it is none.");
+  module.def("patterns_bits", &bits, nb::arg("payload"), nb::arg("frames"), columns, header, model,
+             "Give the bits of a chunk's root and protected columns, of its segments' lengths, "
+             "patterns and places, and of its corrections.");
 }
 
 }  // namespace mocapress

@@ -51,6 +51,8 @@ class Chunk:
     digest: int
     header: bytes | None
     payload: bytes
+    needs: list[bytes]
+    """Digests of the frames of other chunks, in a library."""
 
 
 @dataclass
@@ -242,19 +244,20 @@ def read_original(record: Record, file: File) -> None:
     file.layout = unpacked(record)
 
 
-def read_chunk(record: Record, file: File) -> None:
-    """Take a chunk."""
+def read_chunk(record: Record, file: File, *, needs: bool = False) -> None:
+    """Take a chunk; whether it may need others is for the caller to say."""
     flags = record.integer()
     stream = file.streams[flags // 8]
-    if flags & 5:
+    if flags & (1 if needs else 5):
         raise CorruptError("a chunk that needs others, which no codec of this version makes")
     if record.integer() != sum(chunk.frames for chunk in stream.chunks):
         raise CorruptError("a chunk that does not begin where the one before ends")
     frames = record.integer()
     digest = int.from_bytes(record.raw(4), "little")
     header = record.bytes() if flags & 2 else None
+    needed = [record.raw(32) for _ in range(record.integer())] if flags & 4 else []
     payload = record.raw(len(record.data) - record.at)
-    stream.chunks.append(Chunk(frames, digest, header, payload))
+    stream.chunks.append(Chunk(frames, digest, header, payload, needed))
 
 
 def check_end(record: Record, chunks: int, start: int, data: bytes) -> None:
@@ -274,19 +277,19 @@ def read_model(data: bytes, name: bytes) -> bytes:
     (_, _, header), (_, _, content) = sections(data, b"\x89MCM")
     payload = unpacked(Record(content))
     codec = Record(header).bytes()
-    named = b"".join(length(part) + part for part in (codec, payload))
+    named = b"".join(varint(len(part)) + part for part in (codec, payload))
     if hashlib.sha256(named).digest() != name:
         raise CorruptError("another model than the file names")
     return payload
 
 
-def length(part: bytes) -> bytes:
-    """Give the length of bytes as an ``int``."""
-    size, text = len(part), bytearray()
-    while size > 127:
-        text.append(size & 127 | 128)
-        size >>= 7
-    return bytes([*text, size])
+def varint(number: int) -> bytes:
+    """Give an ``int``."""
+    text = bytearray()
+    while number > 127:
+        text.append(number & 127 | 128)
+        number >>= 7
+    return bytes([*text, number])
 
 
 def packed(row: list[float]) -> bytes:

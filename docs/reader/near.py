@@ -5,6 +5,7 @@ import struct
 from dataclasses import dataclass, field
 
 from exact_functions import sine_cosine
+from near_turning import take_turnings, turn_back
 from records import CorruptError, Record
 from streams import Bit, Coded, magnitude, symbol, tree
 
@@ -288,7 +289,8 @@ class Header:
     def __init__(self, header: bytes, columns: int) -> None:
         record = Record(header)
         record.numbers(2)
-        self.early = record.integer() < 2
+        flags = record.integer()
+        self.early, self.radians = flags & 2 == 0, flags & 4 != 0
         self.knot = (record.integer() + 1) / 8
         self.one = (record.integer() + 1) / 64
         exponent = record.signed()
@@ -306,6 +308,7 @@ class Header:
                 back = count(stream, backs)
                 self.parents.append(len(self.parents) - back if back else -1)
             self.joints.append(len(self.parents) - 1)
+        self.turnings = take_turnings(stream, self.joints)
         stream.end()
 
     def above(self, joint: int) -> int:
@@ -465,6 +468,7 @@ class Chunk:
         self.channels: list[Channel] = []
         self.columns: list[list[float]] = []
         self.rest: list[float] = []
+        self.starts: list[list[float]] = []
 
     def decode(self) -> list[list[float]]:
         """Give the chunk's rows."""
@@ -498,14 +502,20 @@ class Chunk:
 
     def begin(self) -> None:
         """Take where channels begin."""
-        models, firsts, moves = [Bit(), Bit()], tree(6), True
+        stream, models, firsts, moves = self.stream, [Bit(), Bit()], tree(6), True
         for column, step in enumerate(self.header.steps):
-            moves = self.stream.bit(models[int(moves)])
-            number = difference(self.stream, firsts)
+            moves = stream.bit(models[int(moves)])
+            number = difference(stream, firsts)
             self.columns.append([number * (step * 0.25)] * self.frames)
             if moves:
                 value = number * (step * self.header.knot)
                 self.channels.append(Channel(column, step, value))
+        eighth, firsts = 0.7853981633974483 if self.header.radians else 45.0, tree(6)
+        for turning in self.header.turnings:
+            near = [0.0] * 3
+            if not turning.nearest_to_zero:
+                near = [difference(stream, firsts) * eighth for _ in range(3)]
+            self.starts.append(near)
 
     def part(self, i: int, start: int, n: int) -> None:
         """Take a part of a channel's span."""
@@ -578,6 +588,9 @@ class Chunk:
                 self.columns[column][frame] += t * (self.header.steps[column] * part)
                 column += 1
             frame += 1
+        for turning, start in zip(self.header.turnings, self.starts, strict=True):
+            own = self.columns[turning.first : turning.first + 3]
+            turn_back(turning, self.header.radians, own, start)
         column = frame = bits = 0
         for _ in range(count(stream, counts)):
             further = count(stream, places)

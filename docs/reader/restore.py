@@ -14,15 +14,17 @@ import lzma
 import struct
 import sys
 import zlib
+from collections.abc import Sequence
 from pathlib import Path
 
 import arrays
 import c3d
 import table
-from container import Stream, packed, read_file, read_model
+from container import Chunk, File, Stream, packed, read_file, read_model
 from layout import Layout
 from records import CorruptError
 
+Rows = list[list[float]]
 CODECS = ("app", "diffma", "exact", "mrpa", "near", "patterns", "qssd")
 LOSSY = ("diffma", "near", "patterns", "qssd")
 # What a broken file may lead to.
@@ -35,15 +37,18 @@ BROKEN = (
 def restored(data: bytes, model: bytes | None = None) -> bytes:
     """Give the original of a file, of which ``model`` is the ``.mcm`` that it may name."""
     file = read_file(data)
+    return original_of(file, [decoded(stream, model) for stream in file.streams])
+
+
+def original_of(file: File, streams: Sequence[Rows]) -> bytes:
+    """Print the rows of all streams as the original had them."""
     if file.format is None:
-        numbers = [row for stream in file.streams for row in decoded(stream, model)]
-        return b"".join(map(packed, numbers))
+        return b"".join(packed(row) for rows in streams for row in rows)
     if file.format == "":
         original = file.layout
     else:
-        rows = decoded(file.streams[0], model)
+        rows, *others = streams
         if file.format in ("c3d", "npy", "npz"):
-            others = [decoded(stream, None) for stream in file.streams[1:]]
             layout = (c3d if file.format == "c3d" else arrays).Layout(file.layout)
             original = layout.printed([rows, *others])
         elif file.format in ("csv", "trc"):
@@ -56,25 +61,30 @@ def restored(data: bytes, model: bytes | None = None) -> bytes:
     return original
 
 
-def decoded(stream: Stream, model: bytes | None) -> list[list[float]]:
+def decoded(stream: Stream, model: bytes | None) -> Rows:
     """Give the rows of a stream."""
-    if stream.codec not in CODECS:
-        raise CorruptError(f"coded by {stream.codec}, which this reader does not know")
-    more = {}
+    payload = None
     if stream.model:
         if model is None:
             raise CorruptError("decoding needs the model that the file names")
-        more["model"] = read_model(model, stream.model)
+        payload = read_model(model, stream.model)
+    return [row for chunk in stream.chunks for row in decoded_chunk(stream, chunk, payload)]
+
+
+def decoded_chunk(
+    stream: Stream, chunk: Chunk, model: bytes | None, needed: Sequence[Rows] = ()
+) -> Rows:
+    """Give the rows of a chunk, by a model or beside the frames that it needs."""
+    if stream.codec not in CODECS:
+        raise CorruptError(f"coded by {stream.codec}, which this reader does not know")
     formats = [(told[0], told[1]) if told else (4, 0) for told in stream.formats]
     decode = importlib.import_module(stream.codec).decode
-    rows: list[list[float]] = []
-    for chunk in stream.chunks:
-        header = stream.header if chunk.header is None else chunk.header
-        told = [(chunk.frames, chunk.payload)]
-        own = decode(header, stream.parameters, told, formats, **more)
-        if zlib.crc32(b"".join(map(packed, own))) != chunk.digest:
-            raise CorruptError("a chunk decodes to other numbers than were coded")
-        rows += own
+    header = stream.header if chunk.header is None else chunk.header
+    told = [(chunk.frames, chunk.payload)]
+    more = {"model": model} if model else {"needed": needed} if needed else {}
+    rows: Rows = decode(header, stream.parameters, told, formats, **more)
+    if zlib.crc32(b"".join(map(packed, rows))) != chunk.digest:
+        raise CorruptError("a chunk decodes to other numbers than were coded")
     return rows
 
 

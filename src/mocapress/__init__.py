@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from mocapress.motion.convert import to_amc_clip, to_bvh_clip
     from mocapress.motion.editing import concat, crop, mirror, resample, retime
     from mocapress.motion.kinematics import positions, rotations, velocities
+    from mocapress.motion.lengths import Bone, bone_drift, bones, constant_lengths
     from mocapress.motion.markers import (
         Event,
         ForcePlate,
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
     from mocapress.storage import ExistsError
 
 __all__ = [
+    "Bone",
     "BusyError",
     "Clip",
     "Column",
@@ -80,10 +82,13 @@ __all__ = [
     "UnsupportedError",
     "VerificationError",
     "__version__",
+    "bone_drift",
+    "bones",
     "codec",
     "compare",
     "compress",
     "concat",
+    "constant_lengths",
     "crop",
     "decompress",
     "encoder",
@@ -136,6 +141,9 @@ _LAZY = {
     **dict.fromkeys(("Difference", "compare"), "mocapress.motion.comparing"),
     **dict.fromkeys(("concat", "crop", "mirror", "resample", "retime"), "mocapress.motion.editing"),
     **dict.fromkeys(("positions", "rotations", "velocities"), "mocapress.motion.kinematics"),
+    **dict.fromkeys(
+        ("Bone", "bone_drift", "bones", "constant_lengths"), "mocapress.motion.lengths"
+    ),
     **dict.fromkeys(
         (
             "Event",

@@ -374,6 +374,11 @@ def mrpa_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None
 def mrpa_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], parents: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], pieces: Annotated[NDArray[numpy.int64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], mantissa_limit: int) -> None:
     """Fill ``values`` from a chunk; ValueError where it is none."""
 
+def mrpa_weights(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], parents: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], pieces: Annotated[NDArray[numpy.int64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)]) -> list[int]:
+    """
+    Give the numbers of alpha and beta that are best, for each piece of each column.
+    """
+
 def mrpa_estimated_bits(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], parents: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], pieces: Annotated[NDArray[numpy.int64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 4), order='C', device='cpu', writable=False)]) -> list[float]:
     """
     Give about how many bits each piece takes without its parent and with it, by turns.
@@ -407,10 +412,27 @@ def near_errors(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], 
     Give the errors of joints, (F, J), or without a skeleton of values, (F, C).
     """
 
-def near_columns(apart: Sequence[int], joints: Sequence[int], parents: Sequence[int]) -> bytes:
+def near_columns(apart: Sequence[int], joints: Sequence[int], parents: Sequence[int], turnings: Sequence[Sequence[int]]) -> bytes:
     """Code what columns have of their own, for the header."""
 
-def near_encode(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, scale: float, rate: float, weights: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], most: float, value_most: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], rounds: int) -> tuple[bytes, Annotated[NDArray[numpy.float64], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
+def near_turnable(measure: NearMeasure, columns: Sequence[tuple[int, str]]) -> list[list[int]]:
+    """
+    Give the joints that end in three angles: first column, the orders of the file's
+    columns and axes, and of the curves' axes, and whether angles are nearest to zero.
+    """
+
+def near_turned_measure(measure: NearMeasure, turnings: Sequence[Sequence[int]]) -> NearMeasure:
+    """Give the measure of channels as curves turn them."""
+
+def near_turned(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], turnings: Sequence[Sequence[int]]) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
+    """Give the values by which curves turn."""
+
+def near_unlike(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], turnings: Sequence[Sequence[int]]) -> list[int]:
+    """
+    Count for each turning the values that come back as other angles of the same turn.
+    """
+
+def near_encode(measure: NearMeasure, curves: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, scale: float, rate: float, weights: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], most: float, value_most: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], rounds: int) -> tuple[bytes, Annotated[NDArray[numpy.float64], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
     """
     Code rows as a chunk: its payload, the values that it decodes to, and the errors of
     joints, (F, J), or without a skeleton of values, (F, C).
@@ -435,6 +457,11 @@ def patterns_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, 
 
 def patterns_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], header: bytes, model: bytes) -> None:
     """Fill ``values`` from a chunk; ValueError where it is none."""
+
+def patterns_bits(payload: bytes, frames: int, columns: int, header: bytes, model: bytes) -> list[float]:
+    """
+    Give the bits of a chunk's root and protected columns, of its segments' lengths, patterns and places, and of its corrections.
+    """
 
 def qssd_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, model: bytes, most: int, rounding: float, rest_rounding: float, max_errors: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> bytes:
     """Code rows of values as a chunk: core/qssd_learning/encoder.hpp."""

@@ -148,6 +148,7 @@ def describe_mcz(
         "name": (original.name if original else "") or None,
         "codec": codecs.spec(opened.codec()) if main else "general-purpose",
         "lossless": opened.codec().lossless if main else True,
+        "parameters": _parameters(opened.codec()) if main else None,
         "model": model.hex() or None,
         "model_found": _found(model, models) if model else None,
         "raw_bytes": original.size if original else None,
@@ -187,6 +188,13 @@ def _kind(opened: api.Opened) -> str:
     if opened.mcz.original:
         return opened.mcz.original.format or "bytes"
     return "recording" if any(stream.frames is None for stream in opened.streams) else "clip"
+
+
+def _parameters(codec: codecs.Codec) -> str | None:
+    """Give all parameters of a lossy codec, its bounds among them."""
+    if codec.lossless:
+        return None
+    return ", ".join(f"{name}={value}" for name, value in codecs.parameters(codec).items())
 
 
 def _found(digest: bytes, models: Sequence[Place]) -> bool:

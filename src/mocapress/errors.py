@@ -83,7 +83,7 @@ class LimitError(UnsupportedError):
 
     def __init__(self, limit: int, found: int, file: str | None = None) -> None:
         super().__init__(
-            "more would be restored than the limit allows (--limit, limit=)",
+            "more would be restored than the limit allows; limit=... sets another",
             file=file,
             expected=f"at most {limit} bytes",
             found=str(found),

@@ -108,6 +108,9 @@ class Source:
         self._descriptor: int | None = None
         if isinstance(named, bytes | bytearray | memoryview):
             self._contents = bytes(named)
+        elif self.path is None and not hasattr(named, "read"):
+            msg = f"expected a path, bytes or a binary stream, not {type(named).__name__}"
+            raise TypeError(msg)
         elif self.path is None:
             self._contents = _drained(named)  # type: ignore[arg-type]
         else:

@@ -319,7 +319,7 @@ def _permit(descriptor: int, model: os.stat_result) -> None:
 
 
 def _exists(path: Path) -> ExistsError:
-    return ExistsError("file exists; --force or force=True overwrites it", file=str(path))
+    return ExistsError("file exists; force=True overwrites it", file=str(path))
 
 
 @contextmanager

@@ -1,18 +1,13 @@
 """Tab completes commands, codecs and files: typed in the shells themselves."""
 
 import os
-import select
 import shutil
 import subprocess
 import sys
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-
-pty = pytest.importorskip("pty", reason="no terminals on this system")
+from terminals import seen, terminal
 
 LOADED = {
     "bash": (["--norc", "-i"], 'eval "$(mocapress --show-completion)"'),
@@ -45,36 +40,6 @@ def there(shell: str) -> str:
     if found is None:
         pytest.skip(f"{shell} is not installed")
     return found
-
-
-@contextmanager
-def terminal(words: list[str], environment: dict[str, str]) -> Iterator[int]:
-    """Run a program on a terminal; give the terminal's other end."""
-    mine, its = pty.openpty()
-    with subprocess.Popen(
-        words,
-        stdin=its,
-        stdout=its,
-        stderr=its,
-        env=environment,
-        cwd=environment["HOME"],
-        start_new_session=True,
-    ) as running:
-        os.close(its)
-        try:
-            yield mine
-        finally:
-            running.kill()
-            os.close(mine)
-
-
-def seen(terminal: int, wanted: str) -> str:
-    """Read what is shown until something wanted is, or half a minute has passed."""
-    shown, end = "", time.monotonic() + 30
-    while wanted not in shown and time.monotonic() < end:
-        if select.select([terminal], [], [], 0.1)[0]:
-            shown += os.read(terminal, 2**16).decode(errors="replace")
-    return shown
 
 
 @pytest.mark.parametrize("shell", LOADED)

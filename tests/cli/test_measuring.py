@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import pytest
 from running import mocapress
 
 SAMPLES = Path(__file__).parents[2] / "samples"
@@ -54,3 +55,21 @@ def test_what_is_compressed_is_read_wherever_motion_is(tmp_path: Path) -> None:
     assert mocapress("stats", packed).exit_code == 0
     assert mocapress("view", tmp_path, "--export", tmp_path / "page.html").exit_code == 0
     assert mocapress("convert", packed, "-o", tmp_path / "walk.bvh").exit_code == 0
+
+
+def test_a_lossy_file_says_what_it_lost(tmp_path: Path) -> None:
+    lossy = tmp_path / "lossy.mcz"
+    told = mocapress("compress", WALK, "--codec", "diffma:bound=8", "-o", lossy).stdout
+    facts = json.loads(mocapress("compare", WALK, lossy, "--json").stdout)[0]
+    largest = f"largest error {facts['largest_error']:.3g}"
+    assert largest in told
+    assert f"PSNR {facts['psnr']:.1f} dB" in told
+    verified = json.loads(mocapress("verify", lossy, "--json").stdout)[0]["loss"]
+    assert verified["codec"] == "diffma:bound=8.0"
+    assert float(verified["largest_error"]) == pytest.approx(facts["largest_error"], rel=1e-5)
+    assert float(verified["psnr"]) == pytest.approx(facts["psnr"], rel=1e-4)
+    assert f"largest error {verified['largest_error']}" in mocapress("verify", lossy).stdout
+    shown = mocapress("info", lossy).stdout
+    assert "bound=8.0" in shown
+    for key in ("largest_error", "mean_error", "psnr"):
+        assert f"{key}: {verified[key]}" in shown

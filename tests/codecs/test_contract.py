@@ -157,7 +157,7 @@ def test_errors_stay_within_what_was_asked(
 
 @pytest.mark.parametrize("name", ALL)
 def test_decoding_can_begin_at_every_restart(name: str) -> None:
-    clip = clip_of(smooth(2500, 6))
+    clip = clip_of(smooth(4500, 6))
     codec = codecs.codec(name)
     encoded, all_rows = encoded_by(codec, clip), whole(codec, clip)
     assert restarts(encoded.chunks)[0] == 0

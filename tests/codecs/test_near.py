@@ -180,6 +180,33 @@ def test_scales_are_kept_as_parts_of_the_figure() -> None:
     assert np.abs(decoded.values - values)[:, -4:].max() <= 0.1 / 170
 
 
+def turning(middle: float, *, whole_turns: bool) -> Clip:
+    """Give a figure that leans while it turns round twice; its file has the heading innermost."""
+    clip = arm(300)
+    values = clip.values.copy()
+    time = np.arange(300) / 40
+    values[:, 3], values[:, 4] = 20 * np.sin(3 * time), middle + 15 * np.sin(2 * time)
+    values[:, 5] = 95 * time
+    if not whole_turns:
+        values[:, 3:6] = (values[:, 3:6] + 180) % 360 - 180
+    return clip.with_values(values)
+
+
+@pytest.mark.parametrize(
+    "clip",
+    [
+        turning(0, whole_turns=True),
+        turning(0, whole_turns=False),
+        turning(170, whole_turns=True),
+    ],
+    ids=["turns add up", "turns are cut", "over the right angle"],
+)
+def test_angles_of_turned_joints_come_back_as_the_file_writes_them(clip: Clip) -> None:
+    found = decoded_by(mp.codec(f"{CODEC},chunk=128"), clip)
+    assert joint_errors(clip, found, 3).max() <= 0.1
+    assert np.abs(found.values - clip.values).max() < 3
+
+
 @pytest.mark.parametrize("step", [1, 5])
 def test_any_frame_rate_will_do(samples: Path, step: int) -> None:
     clip = mp.read(samples / "cmu_01_01.amc")[:600:step]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import mocapress as mp
 from mocapress import codecs
 from mocapress.codecs.patterns import Patterns
-from mocapress.codecs.patterns.clustering import nearest, patterns_of
+from mocapress.codecs.patterns.clustering import nearest, patterns_in_steps, patterns_of
 from mocapress.codecs.patterns.encoding import Job
 from mocapress.codecs.patterns.hierarchy import Hierarchy, head_diagonal, hierarchy_of, markers_of
 from mocapress.codecs.patterns.segmentation import lengths_of, normalised
@@ -235,6 +235,46 @@ def test_missing_markers_stay_missing() -> None:
     assert np.isnan(found[40:90, 2]).all()
     assert (found[100:140, 4] == 0).all()
     assert np.isfinite(np.delete(found, 2, axis=1)).all()
+
+
+@pytest.mark.parametrize("spec", ["patterns", "patterns:mode=published,max_error=2"])
+def test_the_bytes_of_all_parts_are_those_of_the_chunks(spec: str) -> None:
+    clip = clip_of(moving(600, 9), [f"m{i}" for i in range(9)])
+    made = codecs.codec(spec)
+    encoded = made.encode(clip.main)
+    facts = made.measure(clip, encoded, 0)
+    parts = ("root", "length", "index", "place", "correction")
+    found = sum(facts[f"{part}_bytes"] for part in parts)
+    size = sum(len(chunk.payload) for chunk in encoded.chunks)
+    assert found == pytest.approx(size, rel=0.02, abs=20)
+    assert facts["root_bytes"] > 0
+    assert (facts["place_bytes"] > 0) == (spec == "patterns")
+    assert (facts["correction_bytes"] > 1) == ("max_error" in spec)
+    assert 0 < facts["database_bytes"] <= len(encoded.header)
+
+
+def test_two_steps_of_clustering_find_the_same_groups() -> None:
+    random = np.random.default_rng(0)
+    middles = 100 * random.normal(size=(12, 6))
+    clips = [
+        m + random.normal(size=(40, 6))
+        for m in (middles[:6], middles[6:], middles[3:9])
+        for m in [m[random.integers(0, len(m), 40)]]
+    ]
+    found = patterns_in_steps(clips, 12.0, clusters=2)
+    assert len(found) == 12
+    assert np.linalg.norm(found[:, None] - middles, axis=2).min(axis=0).max() < 2
+
+
+def test_a_model_learned_in_two_steps_keeps_its_errors() -> None:
+    clips = [clip_of(moving(400, 6, seed), [f"m{i}" for i in range(6)]) for seed in range(3)]
+    both = []
+    for spec in ("patterns", "patterns:steps=2"):
+        made = codecs.codec(spec)
+        model = made.learn(clips)
+        encoded = made.encode(clips[0].main, model=model)
+        both.append(made.measure(clips[0], encoded, 0)["arms"])
+    assert both[1] < 1.5 * both[0]
 
 
 def test_the_published_form_keeps_means_in_patterns() -> None:

@@ -41,6 +41,35 @@ def leaps() -> bytes:
     )
 
 
+def recurring() -> dict[str, bytes]:
+    """Give a take; a part of it that somebody has bent; and a part as it is, and more."""
+    chance = random.Random(7)
+    take = [
+        [
+            40 * math.sin(0.03 * (1 + c / 7) * f + c) + chance.uniform(-1.5, 1.5)
+            for c in range(_JOINTS)
+        ]
+        for f in range(260)
+    ]
+    bent = [[v + 3 * math.sin(f / 40) for v in row] for f, row in enumerate(take[40:220])]
+    more = [[v + 50 * c for c, v in enumerate(row)] for row in take[30:60]]
+    parts = {"take": take, "bent": bent, "cut": take[100:250] + more}
+    return {f"{name}.bvh": _chain(rows) for name, rows in parts.items()}
+
+
+_JOINTS = 10
+
+
+def _chain(rows: Matrix) -> bytes:
+    """Give joints one behind the other that turn about one axis each."""
+    one = "JOINT J{}\n{{\nOFFSET 0 1 0\nCHANNELS 1 Xrotation\n"
+    joints = "".join(one.format(i) for i in range(1, _JOINTS))
+    head = "HIERARCHY\nROOT J0\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n" + joints
+    head += "End Site\n{\nOFFSET 0 1 0\n}\n" + "}\n" * _JOINTS
+    text = "".join(" ".join(f"{v:.2f}" for v in row) + "\n" for row in rows)
+    return f"{head}MOTION\nFrames: {len(rows)}\nFrame Time: 0.0083333\n{text}".encode()
+
+
 def _amc(
     chosen: Sequence[int],
     bones: Sequence[str] = (),

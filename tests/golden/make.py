@@ -254,6 +254,17 @@ def embedded() -> bytes:
         return mp.compress(path, "exact:chunk=80", embed_asf=True)
 
 
+def library() -> bytes:
+    """Put clips into a library that are predicted from each other, or share frames."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "library.mocapdb"
+        with mp.open_library(path, "a") as made:
+            for name, data in clips.recurring().items():
+                made.add(data, name, codec="exact:level=1", index=False)
+            made.recompress_together(["take.bvh", "bent.bvh"], "mrpa:chunk=90")
+        return path.read_bytes()
+
+
 def trained(name: str, codec: str) -> bytes:
     """Learn from a golden file."""
     return model_bytes(mp.train([HERE / name], codec))
@@ -297,6 +308,7 @@ if __name__ == "__main__":
     for name, (data, codec) in DOCUMENTS.items():
         put(f"{name}.diffma.json", partial(mp.to_json, data, codec))
         put(name, partial(mp.decompress, HERE / f"{name}.diffma.json"))
+    put("v1_recurring.mocapdb", library)
     learned = mp.Model("learner", bytes(range(100)) * 2)
     put("v1_learner.mcm", partial(model_bytes, learned))
     for program in sorted(HERE.parents[1].glob("core/check/*.cpp")):

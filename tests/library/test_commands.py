@@ -192,3 +192,75 @@ def test_progress_needs_no_terminal(filled: Path, samples: Path, tmp_path: Path)
     (row,) = json.loads(done.stdout)
     assert (row["state"], row["frames"], row["frames_shared"]) == ("added", 69, 69)
     assert done.stderr == b""
+
+
+def test_a_library_may_go_without_an_index(tmp_path: Path, samples: Path) -> None:
+    path = tmp_path / "lib.mocapdb"
+    assert mocapress("library", "create", path, "--no-index").exit_code == 0
+    mocapress("library", "add", path, samples / BVH)
+    packed = tmp_path / "packed.bvh.mcz"
+    packed.write_bytes(mp.compress(samples / BVH))
+    mocapress("library", "import", path, packed)
+    with mp.open_library(path, "a") as library:
+        library.add(samples / BVH, "third.bvh")
+        assert library.lacking() == 3
+        assert {hit.name for hit in library.search("third.bvh")} == {BVH, "packed.bvh"}
+    without = path.stat().st_size
+    assert mocapress("library", "reindex", path).exit_code == 0
+    mocapress("library", "add", path, samples / BVH, "--into", "more", "--index")
+    mocapress("library", "add", path, samples / BVH, "--into", "most")
+    with mp.open_library(path) as library:
+        assert library.lacking() == 1
+    assert path.stat().st_size >= without
+
+
+def test_quiet_commands_print_errors_only(filled: Path, samples: Path, tmp_path: Path) -> None:
+    with mp.open_library(filled) as library:
+        (tmp_path / "free.bvh.mcz").write_bytes(library.read_mcz("other/free.bvh"))
+    (tmp_path / "notes.bvh").write_bytes(b"no motion")
+    for words in (
+        ("add", filled, samples / BVH, "--into", "more"),
+        ("import", filled, tmp_path / "free.bvh.mcz"),
+        ("verify", filled),
+        ("check", filled),
+        ("recompress", filled, "--level", 2),
+        ("reindex", filled),
+        ("label", filled, "*", "--add", "x"),
+        ("extract", filled, "-o", tmp_path / "out"),
+        ("export", filled, "-o", tmp_path / "out"),
+        ("remove", filled, "free.bvh"),
+        ("add", filled, tmp_path / "notes.bvh"),  # with a warning, were it not for -q
+    ):
+        done = mocapress("library", *words, "-q")
+        assert (done.exit_code, done.output) == (0, ""), words
+    done = mocapress("library", "add", filled, tmp_path / "none.bvh", "-q")
+    assert done.exit_code == 1
+    assert "No such file" in done.stderr
+
+
+def test_no_more_is_restored_than_allowed(filled: Path, samples: Path, tmp_path: Path) -> None:
+    """Also by commands that write or draw: a clip of more is an error of its own.
+
+    Of a motion file that is added nothing is restored, so no limit counts.
+    """
+    before = filled.read_bytes()
+    for words in (
+        ("recompress", filled, "--level", 2),
+        ("reindex", filled),
+        ("sheet", filled, "-o", tmp_path / "sheet.png"),
+        ("import", filled, packed_of(samples / BVH, tmp_path)),
+    ):
+        done = mocapress("library", *words, "--limit", "2K")
+        assert done.exit_code in (1, 2), (words, done.output)
+        assert "limit" in done.stderr, words
+        assert "defect" not in done.stderr
+    with mp.open_library(filled) as library:
+        assert [clip.name for clip in library] == ["cmu/01.amc", "other/free.bvh"]
+        assert library["cmu/01.amc"].read_bytes() == (samples / AMC).read_bytes()
+    assert len(filled.read_bytes()) == len(before)
+
+
+def packed_of(path: Path, folder: Path) -> Path:
+    target = folder / f"{path.name}.mcz"
+    target.write_bytes(mp.compress(path))
+    return target

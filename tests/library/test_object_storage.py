@@ -1,7 +1,10 @@
 """Sharded libraries in object storage, worked on by a cluster: whatever fails, nothing is lost."""
 
+import io
+import json
 import os
 import signal
+import tarfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,6 +14,7 @@ from running import mocapress, process
 from takes import amc_of
 
 import mocapress as mp
+from mocapress.viewer.library import ServedLibrary
 
 fsspec = pytest.importorskip("fsspec")
 distributed = pytest.importorskip("distributed")
@@ -102,7 +106,7 @@ def test_a_killed_worker_changes_nothing(
     url = "s3://lab/cluster/"
     create(url)
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
+        n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50
     ) as cluster:
         puts: list[str] = []
 
@@ -129,6 +133,48 @@ def test_a_killed_worker_changes_nothing(
         assert recoded.exit_code == 0, recoded.output
         mocapress("library", "recompress", serial, "--level", 9)
         assert shards(url) == shards(serial)
+
+
+def test_a_page_of_a_library_in_object_storage(serial: str, raw: dict[str, bytes]) -> None:
+    with ServedLibrary(serial) as library:
+        catalogue = library.answer("/catalogue")
+        assert catalogue is not None
+        clips = json.loads(catalogue.content)["clips"]
+        assert [clip["name"] for clip in clips] == sorted(raw)
+        answer = library.answer(f"/clips/{clips[0]['id']}")
+        assert answer is not None
+        wanted = mp.read(raw[clips[0]["name"]]).values
+        assert mp.load(answer.content).values.tobytes() == wanted.tobytes()
+
+
+def test_archives_are_unpacked_for_workers_elsewhere(
+    serial: str, raw: dict[str, bytes], tmp_path: Path
+) -> None:
+    """By way of the storage, of which nothing is left; then the index is made by the workers."""
+    path, url = tmp_path / "raw.tar.gz", "s3://lab/unpacked/"
+    with tarfile.open(path, "w:gz") as made:
+        for name, data in raw.items():
+            entry = tarfile.TarInfo(name)
+            entry.size = len(data)
+            made.addfile(entry, io.BytesIO(data))
+    fsspec.filesystem("s3").put_file(str(path), "lab/archives/raw.tar.gz")
+    done = mocapress("library", "create", url, "--shard-size", 6000, "--no-index")
+    assert done.exit_code == 0
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=2, dashboard_address=":0", silence_logs=50
+    ) as cluster:
+        where = "--cluster", cluster.scheduler_address
+        for source in ("s3://lab/archives/raw.tar.gz", path):
+            done = mocapress("library", "add", url, source, *where)
+            assert done.exit_code == 0, done.output
+            assert contents(url) == raw
+        assert len(shards(url)) == RAW
+        names = fsspec.filesystem("s3", use_listings_cache=False).find(url)
+        assert {name.split("/")[2] for name in names} == {"shards", "manifest"}
+        done = mocapress("library", "reindex", url, *where)
+        assert done.exit_code == 0, done.output
+    with mp.open_library(url) as library:
+        assert library.lacking() == 0
 
 
 def test_an_upload_that_is_cut_off_is_not_seen(

@@ -6,10 +6,9 @@ import sqlite3
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
 import pytest
-from numpy.typing import NDArray
 from running import mocapress
+from similar import bvh_of, similar_takes
 
 import mocapress as mp
 from mocapress.codecs.mrpa import together
@@ -22,34 +21,9 @@ pytest.importorskip("cv2")
 COUNT = 4
 
 
-def takes() -> dict[str, bytes]:
-    """Four takes as tables: the second, third and fourth repeat parts of the first."""
-    random = np.random.default_rng(5)
-    walk = np.cumsum(
-        [np.convolve(c, np.ones(30) / 5, "same") for c in random.normal(0, 1, (10, 1500))], axis=1
-    ).T
-    bend = 0.3 * np.sin(np.arange(1500) / 90)[:, None]
-    parts = {
-        "a": walk,
-        "b": walk[200:900] + bend[:700],
-        "c": walk[500:1400] - bend[:900],
-        "d": walk[220:880] + 1.5 * bend[100:760],
-    }
-    return {name: bvh_of(values) for name, values in parts.items()}
-
-
-def bvh_of(values: NDArray[np.float64]) -> bytes:
-    joints = [f"JOINT J{i}\n{{\nOFFSET 0 1 0\nCHANNELS 1 Xrotation\n" for i in range(9)]
-    head = "HIERARCHY\nROOT hips\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n" + "".join(joints)
-    tail = "End Site\n{\nOFFSET 0 1 0\n}\n" + "}\n" * 10
-    rows = "".join(" ".join(f"{value:.4f}" for value in row) + "\n" for row in values)
-    motion = f"MOTION\nFrames: {len(values)}\nFrame Time: 0.0083333\n"
-    return (head + tail + motion + rows).encode()
-
-
 @pytest.fixture
 def files(library: Library) -> dict[str, bytes]:
-    made = {f"{name}.bvh": data for name, data in takes().items()}
+    made = {f"{name}.bvh": data for name, data in similar_takes().items()}
     for name, data in made.items():
         library.add(data, name, codec="exact:level=1")
     return made
@@ -194,7 +168,7 @@ def test_coding_some_clips_again_keeps_what_needs_them(
 
 
 def test_shared_frames_and_predicted_ones_go_together(library: Library) -> None:
-    files = {f"{name}.bvh": data for name, data in takes().items()}
+    files = {f"{name}.bvh": data for name, data in similar_takes().items()}
     whole = mp.read(files["a.bvh"])
     files["cut.bvh"] = bvh_of(whole.values[300:800])
     for name, data in files.items():
@@ -221,7 +195,7 @@ def test_a_library_of_version_1_takes_it_over(library: Library, files: dict[str,
     path = library.path
     library.close()
     with sqlite3.connect(path) as connection:
-        for table in ("needs", "signatures", "features"):
+        for table in ("needs", "signatures", "features", "settings"):
             connection.execute(f"DROP TABLE {table}")
         connection.execute("DELETE FROM migrations WHERE version > 1")
         connection.execute("PRAGMA user_version = 1")

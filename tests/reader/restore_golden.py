@@ -11,6 +11,9 @@ from tempfile import TemporaryDirectory
 ROOT = Path(__file__).parents[2]
 GOLDEN = ROOT / "tests/golden"
 sys.path.insert(0, str(ROOT / "docs/reader"))
+sys.path.insert(1, str(GOLDEN))
+import clips  # noqa: E402
+import mocapdb  # noqa: E402
 import restore  # noqa: E402
 
 
@@ -34,6 +37,14 @@ def wrong() -> Iterator[Path]:
             restore.main()
             if target.read_bytes() != expected(path):
                 yield path
+    path = GOLDEN / "v1_recurring.mocapdb"
+    for name, original in clips.recurring().items():
+        with TemporaryDirectory() as folder:
+            target = Path(folder) / name
+            sys.argv = ["mocapdb.py", str(path), name, "-o", str(target)]
+            mocapdb.main()
+            if target.read_bytes() != original:
+                yield path / name
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ wrong.
 
 import hashlib
 import re
+import sqlite3
 import struct
 import sys
 from importlib import import_module
@@ -23,6 +24,7 @@ from mocapress.motion.number_format import NumberFormat, NumberKind
 ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "docs/reader"), str(ROOT / "tests/golden")]
 import clips  # noqa: E402
+import mocapdb  # noqa: E402
 import printing  # noqa: E402
 
 Values = NDArray[np.float64]
@@ -92,6 +94,27 @@ def test_every_codec_decodes_to_the_same_bits(tmp_path: Path, name: str, told: s
     path = tmp_path / name
     path.write_bytes(getattr(clips, path.stem)())
     assert_same(mp.read(path), told)
+
+
+def test_clips_of_a_library_come_back() -> None:
+    """Chunks of one are predicted from another's, and a third shares frames."""
+    golden = ROOT / "tests/golden/v1_recurring.mocapdb"
+    with sqlite3.connect(f"{golden.as_uri()}?immutable=1", uri=True) as tables:
+        assert tables.execute("SELECT count(*) FROM needs").fetchone()[0]
+        assert tables.execute("SELECT count(*) FROM runs").fetchone()[0]
+    tables.close()
+    reader = mocapdb.Library(golden)
+    for name, original in clips.recurring().items():
+        assert reader.restored(name) == original
+
+
+def test_mocapress_reads_the_golden_library(tmp_path: Path) -> None:
+    path = tmp_path / "library.mocapdb"
+    path.write_bytes((ROOT / "tests/golden/v1_recurring.mocapdb").read_bytes())
+    with mp.open_library(path) as opened:
+        assert not opened.verify()
+        for name, original in clips.recurring().items():
+            assert opened.read_bytes(name) == original
 
 
 def test_couplings_of_a_part_of_many_columns_decode_to_the_same_bits(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from people import STYLES, named, person
 
 from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.motion import Skeleton
+from mocapress.search.features import features, read_record, record
 from mocapress.search.joint_names import read_mapping
 from mocapress.search.standard import standard_motion
 
@@ -31,6 +32,31 @@ def test_size_and_heading_and_place_do_not_count() -> None:
     assert np.linalg.norm(turned.places, axis=2) == pytest.approx(
         np.linalg.norm(one.places, axis=2), abs=1e-9
     )
+
+
+def test_joined_takes_are_not_blurred_where_they_meet() -> None:
+    first, second = person(1, turned=130), person(2)
+    values = np.concatenate([first.values, second.values])
+    values[60:, 0] += 700  # elsewhere along the floor
+    joined = standard_motion(first.with_frames(values, first.frame_time))
+    assert joined.cuts == (60,)
+    assert joined.mirrored().cuts == (60,)
+    assert joined[50:].cuts == (10,)
+    assert joined[60:].cuts == joined[:60].cuts == ()
+    parts = [standard_motion(first), standard_motion(second)]
+    for part, own in zip(parts, (joined[:60], joined[60:]), strict=True):
+        assert own.places == pytest.approx(part.places, abs=1e-9)
+        assert own.heading == pytest.approx(part.heading, abs=1e-9)
+        # Heights are from the lowest ankle of all, so they may differ, and what changes does not.
+        assert features(own)[:, 31:] == pytest.approx(features(part)[:, 31:], abs=1e-9)
+    read = read_record(record(joined))
+    apart = np.concatenate([read_record(record(joined[:60])), read_record(record(joined[60:]))])
+    assert np.delete(read, 30, axis=1) == pytest.approx(np.delete(apart, 30, axis=1), abs=1e-6)
+
+
+def test_who_moves_without_jumps_has_no_cuts() -> None:
+    assert all(standard_motion(person(seed, frames=300)).cuts == () for seed in range(8))
+    assert standard_motion(person(0, frames=1)).cuts == ()
 
 
 def test_the_frame_rate_does_not_count() -> None:

@@ -1,7 +1,9 @@
 // A clip finds its place by itself: up axis, scale, floor, front; and its error against another.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
+import { readFiles } from "../../viewer/page/reading/files.js";
 import { findBearings, turnUp } from "../../viewer/page/state/bearings.js";
 import { compare } from "../../viewer/page/state/comparison.js";
 import { placed as placedBy } from "../../viewer/page/work/placing.js";
@@ -89,6 +91,35 @@ test("turning up keeps the hand", () => {
 test("without telling names the long way is up", () => {
   const positions = new Float32Array([0, 0, 0, 0, 0, 90, 5, 5, 180]);
   assert.deepEqual(findBearings(positions, 3, ["a", "b", "c"]).up, [2, 1]);
+});
+
+/** A take of one of tests/cases. */
+async function take(name) {
+  const place = new URL(`../cases/48-up-and-root/${name}`, import.meta.url);
+  const { clips } = await readFiles([{ name, bytes: readFileSync(place) }], assets);
+  return new Take(await placed(clips[0]));
+}
+
+test("who lies on the floor most of the time does not stand upside down", async () => {
+  const { bearings } = await take("z_up_push_ups.bvh");
+  assert.deepEqual(bearings.up, [2, 1]);
+});
+
+test("joints that stand still above the hips are no part of the figure", async () => {
+  const made = await take("static_root_walk.bvh");
+  assert.equal(made.jointNames[made.root], "Hips");
+  assert.ok(made.bones.every(([parent]) => parent >= made.root));
+  const place = [0, 0, 0];
+  made.onStage(0, made.jointNames.indexOf("Neck"), place);
+  assert.ok(Math.abs(place[1] - 1.6) < 0.15, `neck at ${place}`);
+  made.rootOnStage(made.frames - 1, place);
+  assert.ok(Math.abs(place[2] - made.bearings.scale * 956) < 0.01, `hips at ${place}`);
+});
+
+test("a chain of links that stand still is a figure", async () => {
+  const clip = figure([1, 1]);
+  clip.skeleton.joints.forEach((joint, i) => (joint.parent = i - 1));
+  assert.equal(new Take(await placed(clip)).root, 0);
 });
 
 test("nothing and a single point have bearings, too", () => {

@@ -157,7 +157,7 @@ def test_a_decoded_clip_is_compared(visit: Visit, samples: Path, tmp_path: Path)
 def test_exact_copies_differ_by_nothing(visit: Visit, samples: Path, tmp_path: Path) -> None:
     same = clip(samples, "freebvh.bvh")
     visit.open(page.document([same, same]), tmp_path)
-    visit.until("document.querySelector('#worst').textContent === '0 units'")
+    visit.until("document.querySelector('#worst').textContent === '0 cm'")
 
 
 def test_clips_stand_in_a_grid(visit: Visit, samples: Path, tmp_path: Path) -> None:
@@ -166,6 +166,50 @@ def test_clips_stand_in_a_grid(visit: Visit, samples: Path, tmp_path: Path) -> N
     visit.until("document.querySelectorAll('#cells span').length === 3")
     assert visit.names() == names
     assert all("up +y" in facts for facts in visit.page.locator("#legend small").all_inner_texts())
+
+
+def test_performers_of_one_scene_stand_in_it(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    made = mp.read(samples / "cmu_01_01.amc")
+    beside = made.values.copy()
+    beside[:, 0] += 15
+    partner = embed.exact(made.with_values(beside), "partner")
+    visit.open(page.document([clip(samples, "cmu_01_01.amc"), partner]), tmp_path)
+    visit.seek(300)
+    assert visit.text("#mode") == "Side by side"
+    assert visit.page.locator("#cells span").count() == 0
+    pixels = visit.pixels()
+    assert coloured(pixels, 1) > 500
+    assert coloured(pixels, 2) > 500
+    visit.page.locator("#mode").click()
+    visit.until("document.querySelectorAll('#cells span').length === 2")
+    assert not visit.page.locator(".heat").is_visible()
+    visit.page.locator("#mode").click()
+    visit.until("document.body.classList.contains('compared')")
+
+
+def test_more_clips_are_on_further_pages(visit: Visit, samples: Path, tmp_path: Path) -> None:
+    clips = [clip(samples, "freebvh.bvh") | {"name": f"clip {i}"} for i in range(19)]
+    visit.open(page.document(clips), tmp_path)
+    visit.until("document.querySelectorAll('#cells span').length === 16")
+    assert visit.text("#page") == "1–16 of 19"
+    visit.page.keyboard.press("PageDown")
+    visit.until("document.querySelectorAll('#cells span').length === 3")
+    assert visit.page.locator("#cells span").all_inner_texts() == ["clip 16", "clip 17", "clip 18"]
+    visit.page.locator("#page-on").click()
+    visit.until("document.querySelectorAll('#cells span').length === 16")
+
+
+def test_a_clip_without_a_skeleton_shows_its_curves(
+    visit: Visit, samples: Path, tmp_path: Path
+) -> None:
+    alone = mp.from_array(np.arange(60.0).reshape(20, 3), names=["a.rx", "a.ry", "b.rx"], fps=30)
+    visit.open(page.document([embed.exact(alone, "alone")]), tmp_path)
+    visit.seek(7)
+    shown = visit.page.locator("#curves .plot")
+    assert shown.locator("b").all_inner_texts() == ["a.rx", "a.ry", "b.rx"]
+    assert shown.locator("output").all_inner_texts() == ["21", "22", "23"]
+    visit.drop(samples / "freebvh.bvh")
+    visit.until("document.querySelector('#curves').hidden")
 
 
 def test_the_inspector_shows_a_joints_channels(visit: Visit, samples: Path, tmp_path: Path) -> None:
@@ -184,6 +228,15 @@ def test_the_inspector_shows_a_joints_channels(visit: Visit, samples: Path, tmp_
     assert shown == pytest.approx(made.values[0, column], rel=1e-3)
     visit.page.locator("#inspector input").fill("HEAD")
     assert joints.locator("option").all_inner_texts() == ["head"]
+    visit.page.locator("#inspector input").press("Enter")
+    shown = float(visit.page.locator(".plot output").first.inner_text())
+    column = [column.name for column in made.columns].index("head.rx")
+    assert shown == pytest.approx(made.values[0, column], rel=1e-3)
+    visit.page.set_viewport_size({"width": 1000, "height": 480})
+    box = visit.page.locator("#inspector .plots").bounding_box()
+    assert box is not None
+    assert box["height"] >= 50
+    assert box["y"] + box["height"] <= 480
 
 
 def test_dropped_files_play(visit: Visit, samples: Path, tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from browsing import LAPTOP, PHONE, Visit, chromium, coloured
 from playwright.sync_api import Browser
+from similar import bvh_of, similar_takes
 from typer.testing import CliRunner
 
 import mocapress as mp
@@ -290,6 +291,97 @@ def test_a_clip_that_needs_a_model_plays(tmp_path: Path, samples: Path) -> None:
         answer = served_library.answer(f"/clips/{number}")
         assert answer is not None
         assert mp.load(answer.content).values.tobytes() == clip.values.tobytes()
+
+
+def test_a_sharded_library_plays(browser: Browser, tmp_path: Path, samples: Path) -> None:
+    pytest.importorskip("pyarrow")
+    folder = tmp_path / "takes"
+    with mp.open_library(f"{folder}/", "a") as library:
+        for name in (BVH, "freebvh.bvh"):
+            library.add(samples / name)
+    with served(browser, folder) as visit:
+        assert listed(visit) == ["freebvh.bvh", BVH]
+        plays(visit, BVH, 455)
+        visit.page.locator("#similar").click()
+        visit.until("document.querySelector('#library output').textContent.includes('like')")
+
+
+def test_the_command_knows_sharded_libraries(
+    tmp_path: Path, samples: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("pyarrow")
+    given: list[str] = []
+    monkeypatch.setattr(
+        "mocapress.cli.view.serve", lambda document, *_, **__: given.append(document)
+    )
+    with mp.open_library(f"{tmp_path}/takes/", "a") as library:
+        library.add(samples / "freebvh.bvh")
+    for name in (f"{tmp_path}/takes", f"{tmp_path}/takes/", f"file://{tmp_path}/takes"):
+        done = CliRunner().invoke(app, ["view", "--no-browser", name])
+        assert done.exit_code == 0, done.output
+    assert all("<title>takes" in document for document in given), given[0][:300]
+    assert len(given) == 3
+    done = CliRunner().invoke(app, ["view", "--no-browser", f"file://{tmp_path}/nothing"])
+    assert (done.exit_code, "no manifest" in done.output) == (1, True)
+
+
+@pytest.fixture
+def similar(tmp_path: Path) -> Path:
+    """A library whose clips are predicted from each other, and one that shares frames with one."""
+    pytest.importorskip("cv2")
+    file = tmp_path / "similar.mocapdb"
+    with mp.open_library(file, "a") as library:
+        for name, data in similar_takes().items():
+            library.add(data, f"{name}.bvh", codec="exact:level=1")
+        library.recompress_together(["a.bvh", "b.bvh", "c.bvh", "d.bvh"], "mrpa")
+        cut = mp.read(similar_takes()["b"]).values[100:500]
+        library.add(bvh_of(cut), "cut.bvh")
+        with library.db.reading() as connection:
+            (count,) = connection.execute("SELECT count(*) FROM needs WHERE clip = 2").fetchone()
+            assert count
+            assert connection.execute("SELECT DISTINCT source FROM runs").fetchall() == [(2,)]
+    return file
+
+
+def test_clips_predicted_from_others_are_served_on_their_own(similar: Path) -> None:
+    files = similar_takes()
+    with ServedLibrary(similar) as library:
+        catalogue = library.answer("/catalogue")
+        assert catalogue is not None
+        clips = json.loads(catalogue.content)["clips"]
+        assert [clip["name"] for clip in clips] == ["a.bvh", "b.bvh", "c.bvh", "cut.bvh", "d.bvh"]
+        for clip in clips:
+            answer = library.answer(f"/clips/{clip['id']}")
+            assert answer is not None
+            assert answer.status == 200
+            original = mp.read(files[clip["name"][0]] if clip["name"] != "cut.bvh" else files["b"])
+            wanted = original[100:500] if clip["name"] == "cut.bvh" else original
+            found = mp.load(answer.content)  # which reads no chunk that needs another clip
+            assert found.values.tobytes() == wanted.values.tobytes()
+            assert found.frame_time == wanted.frame_time
+            assert found.skeleton == wanted.skeleton
+
+
+def test_clips_predicted_from_others_play_where_they_are_served(
+    browser: Browser, similar: Path
+) -> None:
+    with served(browser, similar) as visit:
+        plays(visit, "b.bvh", 700)
+        plays(visit, "cut.bvh", 400)
+
+
+def test_a_dropped_library_says_what_it_cannot_play(browser: Browser, similar: Path) -> None:
+    with empty(browser) as visit:
+        visit.drop(similar)
+        visit.until("document.querySelectorAll('.clips [role=option]').length === 5")
+        for name in ("b.bvh", "cut.bvh"):
+            visit.page.locator(".clips button", has_text=name).click()
+            visit.until("document.querySelector('.notice') !== null")
+            notice = visit.text(".notice")
+            assert notice.startswith("b.bvh: is predicted from other clips of the library")
+            assert "mocapress view" in notice
+            visit.page.locator(".notice button").click()
+        plays(visit, "a.bvh", 1500)  # which needs no other
 
 
 @pytest.mark.parametrize(

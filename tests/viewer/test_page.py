@@ -5,7 +5,7 @@ import gzip
 import hashlib
 import json
 import re
-from importlib.metadata import files
+from importlib.metadata import distribution, files
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +17,8 @@ from mocapress.cli.app import app
 from mocapress.container import diffma_json
 from mocapress.source import Source
 from mocapress.viewer import embed, page
+
+ROOT = Path(__file__).parents[2]
 
 
 def embedded(document: str) -> list[dict[str, object]]:
@@ -201,3 +203,16 @@ def test_the_package_carries_the_page() -> None:
     for path in ("page/main.js", "page/index.html", "vendor/three/LICENSE", "wasm/exact.wasm"):
         assert f"mocapress/viewer/web/{path}" in names
     assert not any("/test" in name for name in names)
+
+
+def test_what_others_wrote_comes_with_its_licence() -> None:
+    """Beside the files themselves, and where installers and auditors look for it."""
+    folders = [path for path in (ROOT / "viewer/vendor").iterdir() if path.is_dir()]
+    carried = {str(name) for name in files("mocapress") or []}
+    for folder in folders:
+        licence = (folder / "LICENSE").read_text()
+        assert len(licence) > 500
+        assert f"mocapress/viewer/web/vendor/{folder.name}/LICENSE" in carried
+    metadata = distribution("mocapress").metadata
+    named = set(metadata.get_all("License-File") or [])
+    assert named == {"LICENSE", *(f"viewer/vendor/{folder.name}/LICENSE" for folder in folders)}

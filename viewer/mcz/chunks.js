@@ -24,8 +24,14 @@ export function readChunk({ content, begin, end }) {
   const header = flags & OWN_HEADER ? content.prefixed() : null;
   const stream = Math.floor(flags / FLAGS);
   if (frames === 0) throw new MczError("a chunk without frames", { offset: begin });
-  if (flags & (CONTINUES | NEEDS)) {
+  if (flags & CONTINUES) {
     throw new MczError("a chunk that needs others, which this page cannot decode", { offset: begin });
+  }
+  if (flags & NEEDS) {
+    throw new MczError("a chunk that needs frames of other clips, which only its library has", {
+      offset: begin,
+      expected: "a file written by 'mocapress library export', which needs none",
+    });
   }
   const payload = content.raw(content.left);
   return { flags, stream, first, frames, digest, header, payload, begin, end };

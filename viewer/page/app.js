@@ -6,6 +6,7 @@ import { labelCells, legend, showKeys } from "./panels/labels.js";
 import { lengthText } from "./panels/lengths.js";
 import { LibraryPanel } from "./panels/library.js";
 import { Notices } from "./panels/notice.js";
+import { Plots } from "./panels/plots.js";
 import { Timeline } from "./panels/timeline.js";
 import { message } from "./reading/files.js";
 import { DroppedLibrary, isLibrary } from "./reading/dropped_library.js";
@@ -13,12 +14,13 @@ import { paint, stagesOf } from "./scene/staging.js";
 import { Viewport } from "./scene/viewport.js";
 import { axisName } from "./state/bearings.js";
 import { speeds } from "./state/comparison.js";
-import { Lineup } from "./state/lineup.js";
+import { Lineup, MOST_AT_ONCE } from "./state/lineup.js";
 import { Player } from "./state/player.js";
 import { Take } from "./state/take.js";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
-const MOST_CLIPS = 16;
+const MOST_CURVES = 120; // of a clip without a figure
+const MODE_NAMES = { compare: "Compare", together: "One scene", apart: "Side by side" };
 
 /** The page as a whole: what the controls do. */
 export class App {
@@ -32,6 +34,7 @@ export class App {
     this.viewport = new Viewport(this.at("canvas"));
     this.timeline = new Timeline(this.at("timeline"), this.player);
     this.inspector = new Inspector(this.at("inspector"), this.player);
+    this.curves = new Plots(this.at("curves"), this.player);
     this.libraryPanel = new LibraryPanel(this.at("library"));
     this.library = null;
     this.trails = true;
@@ -122,38 +125,60 @@ export class App {
   }
 
   #open(clips, errors, how) {
-    const takes = how === "add" ? [...this.lineup.takes] : [];
+    const takes = how === "add" ? [...this.lineup.all] : [];
+    const notes = [];
     for (const clip of clips) {
       try {
         takes.push(new Take(clip));
-        for (const note of clip.notes ?? []) errors.push(`${clip.name}: ${note}`);
+        for (const note of clip.notes ?? []) notes.push(`${clip.name}: ${note}`);
       } catch (error) {
         errors.push(message(error, clip.name));
       }
     }
-    if (takes.length > MOST_CLIPS) errors.push(`only ${MOST_CLIPS} clips are shown at once`);
-    this.notices.show(errors);
-    if (takes.length) this.#show(takes.slice(0, MOST_CLIPS));
+    this.notices.show(errors, notes);
+    if (takes.length) this.#show(() => this.lineup.set(takes));
     else if (!this.lineup.takes.length) document.body.classList.add("empty");
   }
 
-  #show(takes) {
+  /** Change who is shown. */
+  #show(change) {
     const { lineup } = this;
     document.body.classList.remove("empty");
-    lineup.set(takes);
+    change();
     this.timeline.mark();
     this.player.measure(lineup.longest.frames, lineup.longest.frameTime);
-    this.inspector.show(lineup.comparison ? takes : takes.slice(0, 1), lineup.colours);
+    this.#showCurves();
     this.#arrange();
+  }
+
+  /** A clip without a figure shows its curves instead. */
+  #showCurves() {
+    const { figures, takes, colours } = this.lineup;
+    const place = this.at("curves");
+    place.hidden = figures.length > 0;
+    document.body.classList.toggle("bare", !place.hidden);
+    if (!place.hidden) {
+      this.curves.show(takes.slice(0, 1), [...takes[0].clip.names.keys()].slice(0, MOST_CURVES), colours);
+    }
+  }
+
+  #turnPage(by) {
+    const { lineup } = this;
+    if (lineup.pages > 1) this.#show(() => lineup.turnTo((lineup.page + by + lineup.pages) % lineup.pages));
   }
 
   /** Rebuild the stages: the clips, the way of comparing or the up axis have changed. */
   #arrange() {
     const { lineup, viewport } = this;
     viewport.show(stagesOf(lineup));
-    const compared = lineup.comparison !== null;
+    const compared = lineup.isCompared;
     document.body.classList.toggle("compared", compared);
-    this.at("mode").textContent = lineup.isOverlaid ? "Side by side" : "Overlay";
+    this.inspector.show(compared ? lineup.takes : lineup.takes.slice(0, 1), lineup.colours);
+    this.at("mode").hidden = lineup.modes.length < 2;
+    this.at("mode").textContent = MODE_NAMES[lineup.nextMode];
+    this.at("pages").hidden = lineup.pages < 2;
+    const first = lineup.page * MOST_AT_ONCE;
+    this.at("page").textContent = `${first + 1}–${first + lineup.takes.length} of ${lineup.all.length}`;
     this.at("follow").setAttribute("aria-pressed", String(viewport.follows));
     this.at("legend").replaceChildren(...legend(lineup));
     this.#plot();
@@ -164,9 +189,9 @@ export class App {
   #plot() {
     const { lineup, timeline } = this;
     if (!lineup.takes.length) return;
-    const { comparison, takes } = lineup;
-    const text = lengthText(takes[0].clip);
-    if (comparison) {
+    const { comparison, isCompared, takes } = lineup;
+    const text = lengthText(takes[0]);
+    if (isCompared) {
       const curves = [
         { values: comparison.worst, colour: "--error", fill: true },
         { values: comparison.mean, colour: "--muted" },
@@ -211,7 +236,11 @@ export class App {
       play: () => player.play(),
       back: () => player.step(-1),
       forward: () => player.step(1),
-      mode: () => this.#toggleMode(),
+      mode: () => this.#changeMode(),
+      up: () => this.#turnUp(),
+      trail: () => this.#toggleTrails(),
+      "page-back": () => this.#turnPage(-1),
+      "page-on": () => this.#turnPage(1),
       follow: () => this.#toggleFollow(),
       reframe: () => this.viewport.frame(),
       "show-inspector": () => this.#toggleInspector(),
@@ -271,7 +300,12 @@ export class App {
       { keys: ["End"], label: "End", text: "last frame", act: () => player.step(player.frames) },
       { keys: ["-", "["], label: "−", text: "slower", act: () => this.#changeSpeed(-1) },
       { keys: ["+", "=", "]"], label: "+", text: "faster", act: () => this.#changeSpeed(1) },
-      { keys: ["o"], label: "O", text: "overlay or side by side", act: () => this.#toggleMode() },
+      {
+        keys: ["o"],
+        label: "O",
+        text: "compare, in one scene, or side by side",
+        act: () => this.#changeMode(),
+      },
       { keys: ["e"], label: "E", text: "error as colour", act: () => this.#toggleErrors() },
       { keys: ["c"], label: "C", text: "camera follows or stays", act: () => this.#toggleFollow() },
       {
@@ -297,6 +331,8 @@ export class App {
       },
       { keys: ["s"], label: "S", text: "find what is similar", act: () => this.#findSimilar() },
       { keys: ["d"], label: "D", text: "dark or light", act: () => this.at("theme").click() },
+      { keys: ["PageDown"], label: "Page ↓", text: "the next clips", act: () => this.#turnPage(1) },
+      { keys: ["PageUp"], label: "Page ↑", text: "the clips before", act: () => this.#turnPage(-1) },
       { keys: ["?"], label: "?", text: "this list", act: () => this.#toggleHelp() },
     ];
   }
@@ -309,12 +345,10 @@ export class App {
     canvas.addEventListener("pointerup", (event) => {
       if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
       const box = canvas.getBoundingClientRect();
-      const { stage, point } = this.viewport.pick(
-        event.clientX - box.left,
-        event.clientY - box.top,
-      );
-      const take = this.viewport.stages[stage]?.takes[0];
-      if (point < 0 || (take !== this.lineup.takes[0] && !this.lineup.comparison)) return;
+      const found = this.viewport.pick(event.clientX - box.left, event.clientY - box.top);
+      if (!found) return;
+      const { take, point } = found;
+      if (take !== this.lineup.takes[0] && !this.lineup.isCompared) return;
       const joint = point < take.jointNames.length ? point : take.parents[point];
       this.inspector.choose(joint);
     });
@@ -325,9 +359,9 @@ export class App {
     this.player.setSpeed(SPEEDS[Math.min(SPEEDS.length - 1, Math.max(0, here))]);
   }
 
-  #toggleMode() {
-    if (!this.lineup.comparison) return;
-    this.lineup.overlaid = !this.lineup.overlaid;
+  #changeMode() {
+    if (this.lineup.modes.length < 2) return;
+    this.lineup.changeMode();
     this.#arrange();
   }
 
@@ -346,6 +380,7 @@ export class App {
 
   #toggleTrails() {
     this.trails = !this.trails;
+    this.at("trail").setAttribute("aria-pressed", String(this.trails));
     this.#applyTrails();
   }
 
@@ -358,7 +393,7 @@ export class App {
     if (!this.lineup.figures.length) return;
     this.lineup.turnUp();
     this.#arrange();
-    this.notices.show([`the up axis is now ${axisName(this.lineup.takes[0].bearings.up)}`]);
+    this.notices.show([], [`the up axis is now ${axisName(this.lineup.takes[0].bearings.up)}`]);
   }
 
   #toggleInspector(shown = this.at("inspector").hidden) {
@@ -382,6 +417,7 @@ export class App {
     document.documentElement.dataset.theme = theme;
     this.viewport.setTheme(theme);
     this.timeline.plot(this.timeline.label, this.timeline.curves, this.timeline.text);
+    this.curves.draw();
     this.inspector.draw();
     this.#changed();
   }

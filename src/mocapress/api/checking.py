@@ -1,10 +1,12 @@
 """Whether a compressed file is sound."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
+from mocapress import codecs
 from mocapress.api.opening import Opened
 from mocapress.api.restoring import pieces
+from mocapress.codecs.loss import LOSS_NOTES
 from mocapress.container import CHANNELS, Damage, diffma_json
 from mocapress.errors import MissingModelError, MocapressError
 from mocapress.models import Place
@@ -19,6 +21,8 @@ class Checked:
     """Of the original file; without one, of the numbers."""
     damage: tuple[Damage, ...]
     """Everything that is damaged: sections, chunks, the original; nothing of a sound file."""
+    loss: Mapping[str, str] = field(default_factory=dict)
+    """Of a lossy file, its codec and the errors that it states (``mp.read(...).metadata``)."""
 
 
 def verify(source: Named, *, models: Sequence[Place] = (), limit: int | None = LIMIT) -> Checked:
@@ -73,7 +77,15 @@ def verify_opened(opened: Opened) -> Checked:
             raise
         except MocapressError as error:
             opened.damage.append(Damage("the original file", error))
-    return Checked(size, tuple(opened.damage))
+    return Checked(size, tuple(opened.damage), loss_of(opened))
+
+
+def loss_of(opened: Opened) -> dict[str, str]:
+    """Give the codec of a lossy file, and what it says of its errors; nothing of a lossless one."""
+    if not opened.streams or opened.codec().lossless:
+        return {}
+    said = {key: opened.mcz.notes[key] for key in LOSS_NOTES if key in opened.mcz.notes}
+    return {"codec": codecs.spec(opened.codec()), **said}
 
 
 def _decoded(opened: Opened, stream: int) -> int:

@@ -9,10 +9,11 @@ from mocapress.api.encoding import coded, stored_skeleton
 from mocapress.api.opening import Opened
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.codecs.loss import Loss, checked_loss
-from mocapress.container import Head, Mcz, MczWriter, is_storable_time
+from mocapress.container import CodedChunk, Head, Mcz, MczWriter, is_storable_time
 from mocapress.errors import UnsupportedError, VerificationError
 from mocapress.formats.problems import Problem
 from mocapress.motion import Clip
+from mocapress.motion.soundness import refuse_unsound
 from mocapress.source import Source
 
 
@@ -38,6 +39,7 @@ def compress_clip(
     notes: Mapping[str, str] | None = None,
 ) -> Compressed:
     """Compress a clip; see ``compress``. The model is for its first stream."""
+    refuse_unsound(clip)
     made = checked_codec(codec, model)
     skeleton = stored_skeleton(clip)
     heads, chunks = [], []
@@ -52,25 +54,37 @@ def compress_clip(
         chunks += of_stream
     facts = {**({"name": clip.name} if clip.name else {}), **clip.metadata}
     said = {key: readable(fact) for key, fact in facts.items()} | dict(notes or {})
+    whole = Head(tuple(heads), skeleton)
+    found = _checked(clip, made, model, _file(whole, said, chunks))
+    if found.loss:
+        # What was lost is known once the file is decoded, and stands in it.
+        found = _checked(clip, made, model, _file(whole, said | found.loss.notes(), chunks))
+    return found
+
+
+def _file(head: Head, notes: Mapping[str, str], chunks: Sequence[CodedChunk]) -> bytes:
     parts: list[bytes] = []
     writer = MczWriter(parts.append)
-    writer.head(Head(tuple(heads), skeleton))
-    if said:
-        writer.notes(said)
+    writer.head(head)
+    if notes:
+        writer.notes(notes)
     for chunk in chunks:
         writer.chunk(chunk)
     writer.end()
-    blob = b"".join(parts)
+    return b"".join(parts)
+
+
+def _checked(clip: Clip, codec: Codec, model: Model | None, blob: bytes) -> Compressed:
+    """Decode a file, and compare: bits of a lossless codec's values, else their errors."""
     opened = Opened(Source(blob, limit=None), [model] if model else [])
     loss = None
     for index, (name, stream) in enumerate(clip.streams.items()):
         rows = opened.rows(index).values
-        if not made.lossless:
-            alone = Clip({name: stream})
-            found = checked_loss(made, alone, rows)
+        if not codec.lossless:
+            found = checked_loss(codec, Clip({name: stream}), rows)
             loss = loss or found
         elif rows.tobytes() != stream.values.tobytes():
-            raise VerificationError(f"codec {made.id} does not give back stream {name!r}")
+            raise VerificationError(f"codec {codec.id} does not give back stream {name!r}")
     return Compressed(blob, None, loss, opened.mcz)
 
 

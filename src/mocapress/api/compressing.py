@@ -177,16 +177,23 @@ def compress_parts(
             def work(way: Codec) -> Compressed:
                 own = model if way is codec else None
                 clip = with_names(source, parts) if way.can.names else parts.clip
-                made = motion_file(
-                    parts,
-                    source,
-                    coded_streams(clip, way, own),
-                    own,
-                    with_skeleton=with_skeleton,
-                    companions=companions,
-                    notes=notes,
-                )
-                return _checked(made, data, way, clip, own)
+                streams = coded_streams(clip, way, own)
+
+                def checked(said: Mapping[str, str] | None) -> Compressed:
+                    made = motion_file(
+                        parts,
+                        source,
+                        streams,
+                        own,
+                        with_skeleton=with_skeleton,
+                        companions=companions,
+                        notes=said,
+                    )
+                    return _checked(made, data, way, clip, own)
+
+                found = checked(notes)
+                # What was lost is known once the file is decoded, and stands in it.
+                return checked(dict(notes or {}) | found.loss.notes()) if found.loss else found
 
             found, failure = first_that_works(codec, work)
             warning = "; ".join(filter(None, (failure, warning))) or None

@@ -13,8 +13,8 @@ from mocapress.api.restoring import contents, layout_of, own_layout
 from mocapress.container import Original, limits
 from mocapress.container.columns import bone_names, bones_of
 from mocapress.errors import UnsupportedError
+from mocapress.formats.header_pattern import announcing
 from mocapress.formats.layout import Layout
-from mocapress.formats.layout_record import read_layout, write_layout
 from mocapress.formats.patterns import References
 from mocapress.models import Place
 from mocapress.motion import Clip
@@ -87,9 +87,7 @@ def _announcing(layout: Layout, clip: Clip, rows: int) -> Layout:
     """Give the layout with a header for so many rows."""
     bones = bone_names(bones_of(clip.columns))
     references = References.of(clip.skeleton, bones, clip.frame_time)
-    record = write_layout(layout, references)
-    most = limits.most_layout(2**62, 2**62)
-    return read_layout(record, layout.format, len(clip), layout.formats, references, most, rows)
+    return announcing(layout, references, rows, limits.most_layout(2**62, 2**62))
 
 
 def _anew(clip: Clip, kind: str) -> bytes:

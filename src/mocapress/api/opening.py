@@ -203,7 +203,10 @@ class Opened:
             When they are nowhere.
 
         """
-        raise CorruptError("a chunk needs frames of other clips, which only its library has")
+        raise CorruptError(
+            "a chunk needs frames of other clips, which only its library has",
+            expected="a file written by 'mocapress library export', which needs none",
+        )
 
     def _decode(self, stream: int, group: Sequence[Entry], last: int) -> NDArray[np.float64]:
         """Decode successive chunks with one codec header, the first of them a restart.

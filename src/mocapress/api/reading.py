@@ -7,13 +7,15 @@ from pathlib import Path
 from mocapress import formats
 from mocapress.api.clips import compress_clip
 from mocapress.api.loading import load_source
+from mocapress.codecs import DEFAULT_CODEC, Codec
 from mocapress.container import diffma_json
-from mocapress.errors import MocapressError, MotionWarning, UnsupportedError
+from mocapress.errors import MocapressError, MotionWarning, ParameterError, UnsupportedError
 from mocapress.formats import Format
 from mocapress.models import Place
 from mocapress.motion import Clip
 from mocapress.motion.clip import MOTION
 from mocapress.motion.convert import with_rate
+from mocapress.motion.soundness import refuse_unsound
 from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, LIMIT, MCZ, Named, Source
 from mocapress.source import read as read_motion
 from mocapress.storage import ExistsError, write_all, write_whole
@@ -85,6 +87,7 @@ def write(
     *,
     to: str | None = None,
     fps: float | None = None,
+    codec: str | Codec | None = None,
     force: bool = False,
 ) -> None:
     """Write a clip to a motion file, as ``.mcz``, or as DiffMA JSON.
@@ -103,34 +106,45 @@ def write(
     fps
         Frames per second, instead of those of the clip. A BVH has to state its frame time: where
         neither the clip nor ``fps`` says it, 120 are assumed, with a ``MotionWarning``.
+    codec
+        For ``.mcz``, by default ``"exact"``, which loses nothing; and for DiffMA JSON, which always
+        loses something: say how much, ``"diffma:bound=4"`` or ``"diffma:max_error=0.1"``.
     force
         Whether to replace existing files.
 
     Raises
     ------
     ParameterError
-        When ``fps`` is no number above 0.
+        When ``fps`` is no number above 0, a file that loses something is asked for without a codec,
+        a codec for a file that has none, or the clip could not be read back.
     ExistsError
         When a file exists and ``force`` is not given.
     UnsupportedError
         When there is no such format to write in, or the clip lacks what it needs.
 
     """
-    path = Path(path)
+    path, clip = Path(path), with_rate(clip, fps)
+    refuse_unsound(clip)
     if to is None and path.name.lower().endswith(".mcz"):
-        write_whole(path, compress_clip(with_rate(clip, fps)).blob, force=force)
+        write_whole(path, compress_clip(clip, codec or DEFAULT_CODEC).blob, force=force)
         return
     if to is None and path.name.lower().endswith(JSON_SUFFIXES):
-        clip = with_rate(clip, fps)
-        write_whole(path, diffma_json.named(path.name, diffma_json.to_json(clip)), force=force)
+        if codec is None:
+            wanted = 'how much may be lost, such as codec="diffma:bound=4"'
+            raise ParameterError("DiffMA JSON is lossy", file=str(path), expected=wanted)
+        text = diffma_json.to_json(clip, codec)
+        write_whole(path, diffma_json.named(path.name, text), force=force)
         return
+    if codec is not None:
+        expected = f"a name in .mcz or {JSON_SUFFIXES[0]}"
+        raise ParameterError("codec, but the file has none", file=str(path), expected=expected)
     of = formats.configured(to) if to else formats.for_writing(path.name)
     if of is None:
         known = formats.listed(formats.writable())
         raise UnsupportedError(
             "no format to write clips in", expected=known, found=repr(path.suffix)
         )
-    write_all(printed(with_rate(clip, fps, needed=of.timed), of, path), force=force)
+    write_all(printed(with_rate(clip, needed=of.timed), of, path), force=force)
 
 
 def _warn_of_losses(clip: Clip, fitted: Clip, of: Format) -> None:

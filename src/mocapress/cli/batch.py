@@ -142,6 +142,7 @@ def run(
     debug: bool = False,
     whole: float | None = None,
     close: Callable[[], None] | None = None,
+    progress: bool = True,
 ) -> None:
     """Work on all jobs, report each as it is done, and end with the exit code.
 
@@ -167,6 +168,8 @@ def run(
         The sum of all shares, where the number of jobs is not known before.
     close
         What to do before a signal ends the process.
+    progress
+        Whether progress is shown, on a terminal.
 
     """
     report = Report(
@@ -200,7 +203,7 @@ def run(
     pool = ThreadPoolExecutor(threads)
     coming, begun, more = iter(jobs), 0, True
     try:
-        with collecting(), _signals(done.put), bar(whole, number) as advance:
+        with collecting(), _signals(done.put), bar(whole, number if progress else 1) as advance:
             while True:
                 while more and begun - report.count < threads + _AHEAD:
                     job = next(coming, None)

@@ -37,7 +37,7 @@ def compare(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Compare two clips of the same motion: errors by channel and joint, and the PSNR."""
+    """Compare two clips of the same motion: errors by channel, joint and bone, and the PSNR."""
     from mocapress import api
     from mocapress.cli.batch import Job, run
     from mocapress.cli.models import open_models, places_for
@@ -61,6 +61,7 @@ def compare(
             "psnr": found.psnr,
             "channels": _rows(found.channels, found.largest, found.mean),
             "joints": _rows(found.joints, found.largest_distance, found.mean_distance),
+            "bones": _rows(found.bones, found.largest_drift, found.mean_drift),
         }
         if largest is not None and found.most > largest:
             raise VerificationError(
@@ -77,10 +78,11 @@ def compare(
             f"{first} and {second}: {facts['frames']} frames, "
             f"largest error {facts['largest_error']:.6g}, PSNR {facts['psnr']:.2f} dB"
         )
-        for what in ("channels", "joints"):
+        for what in ("channels", "joints", "bones"):
             rows = sorted(facts[what], key=_size, reverse=True)
             if rows and facts["largest_error"]:
-                print(f"{what[:-1]:<32} {'largest':>12} {'mean':>12}")
+                heading = "length between" if what == "bones" else what[:-1]
+                print(f"{heading:<32} {'largest':>12} {'mean':>12}")
             for row in rows[: None if everything else _SHOWN] if facts["largest_error"] else ():
                 print(f"{row['name']:<32} {row['largest']:>12.6g} {row['mean']:>12.6g}")
 

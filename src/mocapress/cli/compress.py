@@ -178,6 +178,7 @@ def compress(
         missed = missed_target(made, loss) if loss else None
         facts["warning"] = "; ".join(filter(None, (facts.get("warning"), missed))) or None
         facts["largest_error"] = loss.most if loss else None
+        facts["mean_error"] = loss.mean if loss else None
         facts["psnr"] = loss.psnr if loss and isfinite(loss.psnr) else None
         job.outputs[job.target] = blob
         job.remove = remove

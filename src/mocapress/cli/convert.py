@@ -56,6 +56,14 @@ def convert(
         float | None,
         typer.Option("--fps", help="Frames per second of files that do not state them.", min=1e-3),
     ] = None,
+    constant: Annotated[
+        bool,
+        typer.Option(
+            "--constant-lengths",
+            help="Move markers a little, so that distances that a body keeps stay the same: for "
+            "what a lossy codec has moved.",
+        ),
+    ] = False,
     lenient: Lenient = False,
     jobs: Jobs = 1,
     force: Force = False,
@@ -73,6 +81,7 @@ def convert(
     from mocapress.container import diffma_json
     from mocapress.formats import by_id, readable, suffixes
     from mocapress.motion.convert import with_rate
+    from mocapress.motion.lengths import constant_lengths
     from mocapress.storage import is_stream
 
     wanted = Selection(frames, time, every, resample, retime, fps)
@@ -103,6 +112,7 @@ def convert(
         source = job.opened(limit)
         places = places_for(job, given)
         clip = api.read_source(source, asf, models=places, strict=not lenient)
+        clip = constant_lengths(clip) if constant else clip
         clip = with_rate(wanted.of(clip), needed=made.timed)
         job.outputs |= api.printed(clip, made, job.target)
         if job.target == STREAM or is_stream(job.target):  # which has nothing beside it

@@ -22,6 +22,7 @@ def info(
     from mocapress import describe
     from mocapress.cli.batch import find, run
     from mocapress.cli.models import open_models, places_for
+    from mocapress.cli.paging import paged
     from mocapress.formats import formats, suffixes
     from mocapress.models import load_model
     from mocapress.source import DIFFMA_JSON, JSON_SUFFIXES, MCM, MCZ
@@ -41,22 +42,19 @@ def info(
             return describe.describe_json(source)
         return describe.describe_file(source, asf_path=asf, strict=strict)
 
-    run(files, work, threads=jobs, json=json, show=show, debug=debug)
+    with paged(not json) as paging:
+        run(files, work, threads=jobs, json=json, show=show, debug=debug, progress=not paging)
 
 
 def show(job: "Job") -> None:
-    """Print what is known of a file as a table."""
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text  # names and notes are text, never markup
-
-    table = Table(title=Text(str(job.source)), show_header=False, title_justify="left")
-    table.add_column(no_wrap=True)
-    table.add_column(overflow="fold")  # digests are to be read whole
-    for key, value in job.result.items():
-        if value is not None and key != "warning":
-            table.add_row(key.replace("_", " "), Text(_text(value)))
-    Console().print(table)
+    """Print what is known of a file: a fact a line, whole, however long it is."""
+    facts = {key.replace("_", " "): value for key, value in job.result.items() if key != "warning"}
+    width = max(map(len, facts))
+    print(job.source)
+    for key, value in facts.items():
+        lines = [] if value is None else _text(value).split("\n")
+        for name, line in zip([key, *[""] * len(lines)], lines, strict=False):
+            print(f"  {name:<{width}}  {line}")
 
 
 def _text(value: Any) -> str:

@@ -10,6 +10,7 @@ def list_codecs(json: Json = False) -> None:
     import json as jsonlib
 
     from mocapress import codecs
+    from mocapress.cli.paging import paged
     from mocapress.cli.report import say
     from mocapress.errors import MocapressError
 
@@ -22,11 +23,12 @@ def list_codecs(json: Json = False) -> None:
     if json:
         print(jsonlib.dumps(rows, indent=1))
         return
-    for row in rows:
-        print(f"{row['id']}: {row['about']}")
-        print(f"    {', '.join(row['can'])}")
-        for parameter, value in row["parameters"].items():
-            print(f"    {parameter}={_text(value)}")
+    with paged(True):
+        for row in rows:
+            print(f"{row['id']}: {row['about']}")
+            print(f"    {', '.join(row['can'])}")
+            for parameter, value in row["parameters"].items():
+                print(f"    {parameter}={_text(value)}")
 
 
 def complete_codecs(begun: str) -> list[str]:

@@ -16,11 +16,22 @@ def list_files(
 ) -> None:
     """List .mcz files, one a line: sizes in bytes, ratio, frames, codec and name."""
     from mocapress.cli.batch import find, run
+    from mocapress.cli.paging import paged
 
     files = find(inputs, (".mcz",))
-    if not json:
-        print(_HEAD)
-    run(files, _work, threads=jobs, json=json, show=_show, total=_total, debug=debug)
+    with paged(not json) as paging:
+        if not json:
+            print(_HEAD)
+        run(
+            files,
+            _work,
+            threads=jobs,
+            json=json,
+            show=_show,
+            total=_total,
+            debug=debug,
+            progress=not paging,
+        )
 
 
 _HEAD = f"{'compressed':>12} {'original':>12} {'ratio':>7} {'frames':>9}  {'codec':<16} name"

@@ -1,6 +1,7 @@
 """What a command says of each file: a line or an object, as soon as the file is done."""
 
 import json as jsonlib
+import re
 import sys
 import traceback
 from collections.abc import Callable
@@ -91,7 +92,7 @@ class Report:
 
 def say(text: str) -> None:
     """Print a line to stderr."""
-    print(f"mocapress: {text}", file=sys.stderr, flush=True)
+    print(f"mocapress: {_as_option(text)}", file=sys.stderr, flush=True)
 
 
 def is_defect(error: Exception | None) -> bool:
@@ -114,6 +115,14 @@ def message(error: Exception, name: str) -> str:
     return text if name in ("", "-") or name in text else f"{name}: {text}"
 
 
+_ARGUMENT = re.compile(r"\b(\w+?)(?:_path)?=(?:True|\.\.\.)")
+
+
+def _as_option(text: str) -> str:
+    """Give a message in which arguments of Python, ``force=True``, are options: ``--force``."""
+    return _ARGUMENT.sub(r"--\1", text)
+
+
 def _json(job: "Job") -> str:
     return jsonlib.dumps(_finite(_row(job)), indent=1, allow_nan=False)
 
@@ -121,12 +130,16 @@ def _json(job: "Job") -> str:
 def _row(job: "Job") -> dict[str, Any]:
     row: dict[str, Any] = {"file": str(job.source)}
     if isinstance(job.error, MocapressError):
-        row = job.error.as_dict() | row
+        row = _as_options(job.error.as_dict()) | row
     elif job.error is not None:
         row |= {"error": type(job.error).__name__, "what": message(job.error, str(job.source))}
     else:
         row |= job.result
-    return row | {"warnings": [warning.as_dict() for warning in job.warnings]}
+    return row | {"warnings": [_as_options(warning.as_dict()) for warning in job.warnings]}
+
+
+def _as_options(facts: dict[str, Any]) -> dict[str, Any]:
+    return {k: _as_option(v) if isinstance(v, str) else v for k, v in facts.items()}
 
 
 def _finite(value: Any) -> Any:

@@ -7,8 +7,11 @@ def show_sizes(job: Job) -> None:
     """Print a line for a file that was written."""
     if job.target == STREAM:
         return
-    lost = job.result.get("largest_error")
-    errors = "" if lost is None else f", errors up to {lost:.3g}"
+    lost, errors = job.result.get("largest_error"), ""
+    if lost is not None:
+        errors = f"; lossy: largest error {lost:.3g}, mean {job.result['mean_error']:.3g}"
+        if job.result["psnr"] is not None:
+            errors += f", PSNR {job.result['psnr']:.1f} dB"
     print(f"{job.target}: {_sizes([job])}{errors}")
 
 

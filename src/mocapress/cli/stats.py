@@ -25,6 +25,7 @@ def stats(
     from mocapress import api
     from mocapress.cli.batch import find, run
     from mocapress.cli.models import open_models, places_for
+    from mocapress.cli.paging import paged
     from mocapress.formats import readable, suffixes
     from mocapress.motion.statistics import statistics
 
@@ -37,7 +38,8 @@ def stats(
         return {"frames": len(clip), "seconds": clip.duration} | statistics(clip)
 
     files = find(inputs, (*suffixes(readable()), ".mcz"))
-    run(files, work, threads=jobs, json=json, show=_show, failure_code=1, debug=debug)
+    with paged(not json) as paging:
+        run(files, work, threads=jobs, json=json, show=_show, debug=debug, progress=not paging)
 
 
 def _show(job: "Job") -> None:

@@ -34,10 +34,12 @@ def verify(
         if checked.damage:
             parts = (f"{where} ({error.what})" for where, error in checked.damage)
             raise CorruptError("; ".join(parts))
-        return {"raw_bytes": checked.raw_bytes, "ok": True}
+        return {"raw_bytes": checked.raw_bytes, "ok": True, "loss": dict(checked.loss) or None}
 
     run(files, work, threads=jobs, json=json, show=_show, failure_code=3, debug=debug)
 
 
 def _show(job: "Job") -> None:
-    print(f"{job.source}: {job.result['raw_bytes']} bytes, ok")
+    loss = job.result["loss"]
+    said = "" if loss is None else f"; lossy: {', '.join(f'{k} {v}' for k, v in loss.items())}"
+    print(f"{job.source}: {job.result['raw_bytes']} bytes, ok{said.replace('_', ' ')}")

@@ -12,13 +12,16 @@ if TYPE_CHECKING:
 
     from mocapress.viewer.server import Answer
 
+MANIFESTS = "manifest/*.parquet"
+"""What the folder of a sharded library has, and one of motion files has not."""
+
 
 def view(
     files: Annotated[
-        list[Path] | None,
+        list[str] | None,
         typer.Argument(
-            help="Motion files, .mcz, folders, or one library; given two files, the second is "
-            "compared with the first."
+            help="Motion files, .mcz, folders, or one library, also the folder or URL of a sharded "
+            "one; of two files that are alike, the second is compared with the first."
         ),
     ] = None,
     export: Annotated[
@@ -55,10 +58,10 @@ def view(
     from mocapress.viewer import embed, page
     from mocapress.viewer.server import nothing
 
-    if any(path.suffix.lower() == ".mocapdb" for path in files or []):
+    if any(_is_library(name) for name in files or []):
         _serve_library(files or [], export, port, browser=browser, strict=not lenient, debug=debug)
         return
-    inputs = _found(files or [])
+    inputs = _found([Path(name) for name in files or []])
     refuse_other_kinds(str(export) if export else None, (".html",), known_endings())
     stated = max_error if export else None
     name = ""
@@ -98,6 +101,11 @@ def view(
         serve(document, port, browser=browser, more=nothing)
 
 
+def _is_library(name: str) -> bool:
+    """Tell a library from motion files and folders of them."""
+    return name.lower().endswith(".mocapdb") or "://" in name or any(Path(name).glob(MANIFESTS))
+
+
 def _found(paths: list[Path]) -> list[Path]:
     """Give the files that were named, and those below folders that were."""
     from mocapress.cli.batch import find
@@ -108,7 +116,7 @@ def _found(paths: list[Path]) -> list[Path]:
 
 
 def _serve_library(
-    inputs: list[Path],
+    inputs: list[str],
     export: Path | None,
     port: int,
     *,
@@ -134,7 +142,7 @@ def _serve_library(
     except (MocapressError, OSError) as error:
         if debug:
             raise
-        say(message(error, str(library)))
+        say(message(error, library))
         raise typer.Exit(1) from error
 
 

@@ -109,10 +109,18 @@ class Together:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """What a codec learned from other clips, as bytes; named by its hash in files that need it."""
+    """What a codec learned from other clips, as bytes; named by its hash in files that need it.
+
+    Attributes
+    ----------
+    codec
+        Id of the codec.
+    payload
+        What the codec learned, in its own form.
+
+    """
 
     codec: str
-    """Id of the codec."""
     payload: bytes = field(repr=False)
 
     @property

@@ -1,5 +1,6 @@
 """What a lossy codec lost, measured on its decoder's output."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 
 from mocapress.codecs.contract import Codec
 from mocapress.errors import VerificationError
-from mocapress.motion import Clip
+from mocapress.motion import Clip, Column
 from mocapress.motion.comparing import errors_of
 
 
@@ -18,21 +19,30 @@ class Loss:
 
     largest: tuple[float, ...]
     """Largest error of each channel, in its unit; infinite where a NaN or infinity changed."""
+    mean: float
+    """Mean error of all finite values, each in its unit."""
     psnr: float
     """-10 log10 of the mean squared error over all finite values, dB; infinite without error."""
 
     @classmethod
-    def of(cls, original: NDArray[np.float64], decoded: NDArray[np.float64]) -> Self:
-        """Measure the loss of (F, C) values."""
+    def of(
+        cls,
+        original: NDArray[np.float64],
+        decoded: NDArray[np.float64],
+        columns: Sequence[Column] = (),
+    ) -> Self:
+        """Measure the loss of (F, C) values; of columns that are angles, modulo whole turns."""
         finite = np.isfinite(original)
-        errors = errors_of(original, decoded)
+        errors = errors_of(original, decoded, columns)
+        known = errors[finite]
         with np.errstate(over="ignore"):
-            squares = errors[finite] ** 2
-            mean = float(squares.mean()) if squares.size else 0.0
+            square = float((known**2).mean()) if known.size else 0.0
+            mean = float(known.mean()) if known.size else 0.0
         largest = errors.max(axis=0, initial=0)
         return cls(
             tuple(float(error) for error in largest),
-            float(-10 * np.log10(mean)) if mean else float("inf"),
+            mean,
+            float(-10 * np.log10(square)) if square else float("inf"),
         )
 
     @property
@@ -40,9 +50,20 @@ class Loss:
         """The largest error of any channel."""
         return max(self.largest, default=0.0)
 
+    def notes(self) -> dict[str, str]:
+        """Give what a file says of what it lost, as its notes."""
+        facts = zip(LOSS_NOTES, (self.most, self.mean, self.psnr), strict=True)
+        return {key: f"{value:.6g}" for key, value in facts}
+
+
+LOSS_NOTES = ("largest_error", "mean_error", "psnr")
+"""Keys of the notes in which a lossy file says what it lost."""
+
 
 def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss:
     """Measure what a codec lost, and check that it kept its bounds.
+
+    An angle that is off by whole turns has lost nothing, unless a bound was asked for.
 
     Raises
     ------
@@ -50,17 +71,16 @@ def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss
         When a channel's error is above its bound.
 
     """
-    loss = Loss.of(clip.values, decoded)
-    for column, error, bound in zip(
-        clip.columns, loss.largest, codec.largest_errors(clip.columns), strict=True
-    ):
+    bounds = codec.largest_errors(clip.columns)
+    bounded = Loss.of(clip.values, decoded)
+    for column, error, bound in zip(clip.columns, bounded.largest, bounds, strict=True):
         if error > bound:
             raise VerificationError(
                 f"codec {codec.id} breaks its bound in channel {column.name}; please report this",
                 expected=f"errors up to {bound:g}",
                 found=f"{error:g}",
             )
-    return loss
+    return Loss.of(clip.values, decoded, clip.columns)
 
 
 def missed_target(codec: Codec, loss: Loss) -> str | None:

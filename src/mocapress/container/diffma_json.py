@@ -204,7 +204,7 @@ def json_to_file(source: Source) -> tuple[str, bytes]:
     if not document.layout:
         raise UnsupportedError(
             "$.layout is not there to make the file again",
-            expected="a file that mocapress compress made, or convert --to bvh",
+            expected="one made of a motion file; this one can only be converted",
         )
     found, kind, record = _unpacked(document)
     values = document.decode()

@@ -1,6 +1,6 @@
 """A file of arrays without their numbers: docs/format/arrays.md."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.errors import CorruptError
-from mocapress.formats.rows import RowsOf, rows_of
+from mocapress.formats.contract import StoredLayout
+from mocapress.formats.rows import RowsOf
 from mocapress.records import Reader, Writer
 
 Values = NDArray[np.float64]
@@ -60,7 +61,7 @@ class Array(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ArrayLayout:
+class ArrayLayout(StoredLayout):
     """A file of arrays without their numbers."""
 
     format: str
@@ -75,28 +76,8 @@ class ArrayLayout:
         in_order = sorted(self.arrays, key=lambda array: array.stream)
         return [(array.rows, array.columns) for array in in_order]
 
-    def join(self, streams: Sequence[Values], most_bytes: int = 2**62) -> bytes:
-        """Give the file's bytes from the values of all streams, each (F, C).
-
-        Raises
-        ------
-        CorruptError
-            When they do not fit, or more than ``most_bytes`` would come out.
-
-        """
-        if [values.shape for values in streams] != self.sizes:
-            raise CorruptError("the streams do not fit the layout")
-        return b"".join(self.pieces(rows_of(streams), most_bytes))
-
     def pieces(self, rows: RowsOf, most_bytes: int = 2**62) -> Iterator[bytes]:
-        """Give the file's bytes one part after the other, asking for rows as they are printed.
-
-        Raises
-        ------
-        CorruptError
-            When more than ``most_bytes`` would come out.
-
-        """
+        """Print the file; see ``StoredLayout``."""
         size = sum(array.size for array in self.arrays) + sum(map(len, self.between))
         if size > most_bytes:
             raise CorruptError("the layout makes a longer file than announced")

@@ -1,6 +1,7 @@
 """ASF: an Acclaim skeleton."""
 
 import re
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -36,7 +37,11 @@ def _of(data: bytes) -> Skeleton | Problem:
     text = FileText.of(data)
     read = _core.read_asf(text.data)
     if read.fault:
-        return Problem.told(read.fault, text)
+        fault = Problem.told(read.fault, text)
+        if _KEYWORD.search(text.data):
+            return fault
+        expected = "sections such as :root and :bonedata"
+        return replace(fault, what="not an Acclaim skeleton", line=None, expected=expected)
     joints = tuple(Joint(*joint) for joint in read.joints)
     unit = "rad" if read.radians else "deg"
     return Skeleton(joints, "fixed", unit, read.length_unit, read.name, {"mass": read.mass})

@@ -3,7 +3,7 @@
 docs/format/c3d.md says what is stored.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.errors import CorruptError
-from mocapress.formats.rows import RowsOf, rows_of
+from mocapress.formats.contract import StoredLayout
+from mocapress.formats.rows import RowsOf
 from mocapress.motion.markers import ANALOG, CAMERAS, POINTS, RESIDUALS, ROTATIONS, WHOLE_WORD
 from mocapress.records import Reader, Writer
 
@@ -100,7 +101,7 @@ class Shape(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class C3dLayout:
+class C3dLayout(StoredLayout):
     """A C3D file without its numbers."""
 
     shape: Shape
@@ -122,28 +123,8 @@ class C3dLayout:
         """Give frames and columns of each stream."""
         return list(sizes_of(self.shape).values())
 
-    def join(self, streams: Sequence[Values], most_bytes: int = 2**62) -> bytes:
-        """Give the file's bytes from the streams that ``split`` made, each (F, C).
-
-        Raises
-        ------
-        CorruptError
-            When they are not of this file, or more than ``most_bytes`` would come out.
-
-        """
-        if [values.shape for values in streams] != self.sizes:
-            raise CorruptError("the streams do not fit the layout")
-        return b"".join(self.pieces(rows_of(streams), most_bytes))
-
     def pieces(self, rows: RowsOf, most_bytes: int = 2**62) -> Iterator[bytes]:
-        """Give the file's bytes one part after the other, asking for rows as they are printed.
-
-        Raises
-        ------
-        CorruptError
-            When more than ``most_bytes`` would come out.
-
-        """
+        """Print the file; see ``StoredLayout``."""
         shape = self.shape
         sizes = shape.frames * shape.numbers + shape.turns * shape.rotations * IN_ROTATION
         if sizes * shape.size + len(self.head) + len(self.between) + len(self.tail) > most_bytes:

@@ -1,16 +1,18 @@
 """What a format is: everything that the rest of mocapress knows of a kind of motion file."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapress.errors import CorruptError
 from mocapress.formats.layout import Layout
 from mocapress.formats.problems import Problem
-from mocapress.formats.rows import RowsOf
+from mocapress.formats.rows import RowsOf, rows_of
 from mocapress.motion import Clip, Column, Skeleton
 from mocapress.records import Ranges
 
@@ -19,30 +21,45 @@ Near = Callable[[str, str], bytes | None]
 "_channels.tsv")`` that of ``walk_channels.tsv`` for ``walk_motion.tsv``."""
 
 
-class StoredLayout(Protocol):
+class StoredLayout(ABC):
     """Everything of a file that is not in its streams, where it is not rows of text."""
 
-    @property
-    def format(self) -> str:
-        """Id of the format."""
-        ...
+    __slots__ = ()
+    format: str
+    """Id of the format."""
 
     @property
+    @abstractmethod
     def sizes(self) -> list[tuple[int, int]]:
         """Give frames and columns of each stream."""
-        ...
 
-    def join(self, streams: Sequence[NDArray[np.float64]], most_bytes: int = ...) -> bytes:
-        """Give the file's bytes from the values of all streams; ``CorruptError`` as ``Layout``."""
-        ...
-
+    @abstractmethod
     def pieces(self, rows: RowsOf, most_bytes: int = ...) -> Iterator[bytes]:
-        """Give the same, part after part, asking for rows in their order as they are printed."""
-        ...
+        """Give the file's bytes one part after the other, asking for rows as they are printed.
 
+        Raises
+        ------
+        CorruptError
+            When the layout does not fit, or more than ``most_bytes`` would come out.
+
+        """
+
+    @abstractmethod
     def record(self) -> bytes:
         """Give the layout as it is stored; the format's ``read_layout`` reads it."""
-        ...
+
+    def join(self, streams: Sequence[NDArray[np.float64]], most_bytes: int = 2**62) -> bytes:
+        """Give the file's bytes from the values of all streams, each (F, C).
+
+        Raises
+        ------
+        CorruptError
+            When they do not fit, or more than ``most_bytes`` would come out.
+
+        """
+        if [values.shape for values in streams] != self.sizes:
+            raise CorruptError("the streams do not fit the layout")
+        return b"".join(self.pieces(rows_of(streams), most_bytes))
 
 
 class Split(NamedTuple):

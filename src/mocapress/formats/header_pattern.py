@@ -4,8 +4,9 @@ import re
 from dataclasses import replace
 
 from mocapress import _core
+from mocapress.formats.layout import Layout
 from mocapress.formats.number_formats import unpacked
-from mocapress.formats.patterns import References, Style, of_header
+from mocapress.formats.patterns import References, Style, of_header, print_header
 
 _INDENTED = re.compile(rb"\{[ \t]*(?:\r\n|[\r\n])([ \t]+)")
 
@@ -30,6 +31,19 @@ def header_pattern(
         header, *refer, rows, style.line_break, style.indentation
     )
     return pattern, replace(style, formats=unpacked(formats))
+
+
+def pattern_of(layout: Layout, references: References) -> tuple[bytes, Style]:
+    """Give the pattern of a layout's header, and the style that it needs."""
+    row = b"".join(layout.templates[0].literals) if layout.templates else b""
+    style = style_of(layout.header, row, references)
+    return header_pattern(layout.header, len(layout.assigned), references, style)
+
+
+def announcing(layout: Layout, references: References, rows: int, most: int) -> Layout:
+    """Give a layout with a header, of at most so many bytes, that announces so many rows."""
+    pattern, style = pattern_of(layout, references)
+    return replace(layout, header=print_header(pattern, references, style, rows, most))
 
 
 def _is_latin(names: str, text: bytes) -> bool:

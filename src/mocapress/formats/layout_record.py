@@ -5,7 +5,7 @@ from array import array
 import numpy as np
 
 from mocapress.errors import CorruptError
-from mocapress.formats.header_pattern import header_pattern, style_of
+from mocapress.formats.header_pattern import pattern_of
 from mocapress.formats.layout import MOST_TEMPLATES, Layout
 from mocapress.formats.number_formats import read_format, write_format
 from mocapress.formats.patterns import (
@@ -33,10 +33,7 @@ _COLUMNS, _WIDTHS, _COUNTER_WIDTH = 1, 2, 4
 def write_layout(layout: Layout, references: References) -> bytes:
     """Give the layout of a file whose head says what is referred to."""
     counted = any(template.counter for template in layout.templates)
-    row = b"".join(layout.templates[0].literals) if layout.templates else b""
-    pattern, style = header_pattern(
-        layout.header, len(layout.assigned), references, style_of(layout.header, row, references)
-    )
+    pattern, style = pattern_of(layout, references)
     writer = Writer()
     names = _UTF8 * (style.encoding == "utf-8")
     writer.integer(_COUNTED * counted | names | _ENCODINGS[layout.encoding])

@@ -4,7 +4,7 @@ A layout also keeps all cells that are printed otherwise. ``table_splitting`` fi
 docs/format/table.md says how it is stored.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.errors import CorruptError
+from mocapress.formats.contract import StoredLayout
 from mocapress.formats.number_formats import SHORTEST, packed, read_format, write_format
-from mocapress.formats.rows import RowsOf, rows_of
+from mocapress.formats.rows import RowsOf
 from mocapress.motion.number_format import NumberFormat
 from mocapress.records import Reader, Writer
 
@@ -84,7 +85,7 @@ def series(first: Fraction, step: Fraction, rows: Values) -> Values:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class TableLayout:
+class TableLayout(StoredLayout):
     """A table without its numbers."""
 
     format: str
@@ -104,28 +105,8 @@ class TableLayout:
         """Give frames and columns of the stream."""
         return [(self.rows, sum(column.kind == NUMBERS for column in self.columns))]
 
-    def join(self, streams: Sequence[Values], most_bytes: int = 2**62) -> bytes:
-        """Give the file's bytes from the values of the stream, (F, C).
-
-        Raises
-        ------
-        CorruptError
-            When they do not fit, or more than ``most_bytes`` would come out.
-
-        """
-        if [values.shape for values in streams] != self.sizes:
-            raise CorruptError("values do not fit the layout")
-        return b"".join(self.pieces(rows_of(streams), most_bytes))
-
     def pieces(self, rows: RowsOf, most_bytes: int = 2**62) -> Iterator[bytes]:
-        """Give the file's bytes one part after the other, asking for rows as they are printed.
-
-        Raises
-        ------
-        CorruptError
-            When they do not fit, or more than ``most_bytes`` would come out.
-
-        """
+        """Print the file; see ``StoredLayout``."""
         left = most_bytes - len(self.header) - len(self.tail)
         try:
             printer = _core.TablePrinter(

@@ -168,8 +168,7 @@ class Adder:
             old = names.find(connection, name)
             if old is not None and not self.overwrite:
                 raise ExistsError(
-                    "there is a clip of this name; --replace or replace=True puts this one in its "
-                    "place",
+                    "there is a clip of this name; replace=True puts this one in its place",
                     file=name,
                 )
             came_meanwhile = known.refresh(connection) > made.newest

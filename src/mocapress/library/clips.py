@@ -21,26 +21,51 @@ _FACTS = (
 
 @dataclass(frozen=True, slots=True)
 class StoredClip:
-    """A clip in a library: facts about it now, its numbers when they are asked for."""
+    """A clip in a library: facts about it now, its numbers when they are asked for.
+
+    Attributes
+    ----------
+    library
+        Path of its library.
+    id
+        Stays the clip's as long as it is there, and is never another's.
+    name
+        In the library.
+    format
+        Id of the original's format; empty where it is no motion, or there is no original.
+    frames
+        Number of frames, F.
+    channels
+        Number of channels, C.
+    frame_time
+        Seconds, rounded to a double; None where the source does not say.
+    size
+        Bytes of the original; None where there is none.
+    sha256
+        Of the original file.
+    modified
+        When the original was last changed, in nanoseconds since 1970.
+    codec
+        With its parameters.
+    skeleton
+        Name of the skeleton.
+    labels
+        Of the clip, in order.
+
+    """
 
     library: "Reading | None" = field(repr=False, compare=False)
     id: int
-    """Stays the clip's as long as it is there, and is never another's."""
     name: str
     format: str
-    """Id of the original's format; empty where it is no motion, or there is no original."""
     frames: int
     channels: int
     frame_time: float | None
-    """Seconds, rounded to a double; None where the source does not say."""
     size: int | None
-    """Bytes of the original; None where there is none."""
     sha256: str | None
     modified: int | None
-    """When the original was last changed, in nanoseconds since 1970."""
     codec: str | None
     skeleton: str | None
-    """Name of the skeleton."""
     labels: tuple[str, ...]
 
     @property

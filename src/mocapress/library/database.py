@@ -227,8 +227,15 @@ _SYSTEM = {
 }
 
 
-def create(path: Path) -> None:
+def create(path: Path, *, indexed: bool = True) -> None:
     """Make a library without clips.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+    indexed
+        Whether clips are indexed for search when they are added, unless said otherwise then.
 
     Raises
     ------
@@ -236,7 +243,7 @@ def create(path: Path) -> None:
         When the file exists.
 
     """
-    write_whole(path, schema.empty())
+    write_whole(path, schema.empty(indexed=indexed))
 
 
 def _end(connection: sqlite3.Connection, statement: str) -> None:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from mocapress.errors import UnsupportedError
 from mocapress.library.rows import Connection
-from mocapress.library.schema import SEARCH, version_of
+from mocapress.library.schema import NO_INDEX, SEARCH, SETTINGS, version_of
 from mocapress.motion import Clip
 from mocapress.search.index import VERSION, Entry, entry_of
 from mocapress.search.signatures import BYTES
@@ -35,6 +35,14 @@ def made_of(clip: Clip, joints: Mapping[str, str] | None = None) -> Entry:
         return entry_of(standard_motion(clip, fitting))
     except UnsupportedError:
         return NOTHING
+
+
+def is_wanted(connection: Connection) -> bool:
+    """Say whether clips are indexed when they are added: unless the library was made without."""
+    if version_of(connection) < SETTINGS:
+        return True
+    found = connection.execute("SELECT value FROM settings WHERE name = ?", NO_INDEX[:1]).fetchone()
+    return bool(found != NO_INDEX[1:])
 
 
 def write(connection: Connection, clip: int, entry: Entry) -> None:

@@ -22,6 +22,7 @@ from mocapress.library.clips import StoredClip, by_id
 from mocapress.library.coding import Coder
 from mocapress.library.database import WAIT, Database
 from mocapress.library.finding import Finding
+from mocapress.library.index import is_wanted
 from mocapress.library.reading import APPEND, READ, Which
 from mocapress.library.removing import recompress, remove_clips
 from mocapress.library.searching import Reindexed, reindex
@@ -106,7 +107,7 @@ class Library(Finding):
         labels: Sequence[str] = (),
         notes: Mapping[str, str] | None = None,
         replace: bool = False,
-        index: bool = True,
+        index: bool | None = None,
     ) -> StoredClip:
         """Add a file or a clip, in one transaction; it was decoded and compared before.
 
@@ -125,7 +126,8 @@ class Library(Finding):
         replace
             Whether a clip of this name that is another is replaced.
         index
-            Whether what ``search`` compares is made and kept at once.
+            Whether what ``search`` compares is made and kept at once; without it, as the library
+            was made.
 
         Returns
         -------
@@ -215,9 +217,12 @@ class Library(Finding):
         *,
         overwrite: bool,
         models: Sequence[Place] = (),
-        indexed: bool = True,
+        indexed: bool | None = None,
     ) -> Adder:
         """Give what adds clips with a codec; threads may share it."""
+        if indexed is None:
+            with self.db.reading() as connection:
+                indexed = is_wanted(connection)
         coder = self._coder(codec, model)
         return Adder(replace(coder, models=[*self.models, *models]), overwrite, indexed)
 

@@ -85,22 +85,33 @@ CREATE TABLE features(clip INTEGER PRIMARY KEY REFERENCES clips ON DELETE CASCAD
     checksum INTEGER NOT NULL, rows BLOB NOT NULL) STRICT;
 """
 
+_SETTINGS = """
+CREATE TABLE settings(name TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT, WITHOUT ROWID;
+"""
+
 SEARCH = 3
 """The first version of the schema that has an index for search."""
+SETTINGS = 4
+"""The first version of the schema that has settings."""
+NO_INDEX = ("index", "no")
+"""The setting of a library whose clips are not indexed for search when they are added."""
 MIGRATIONS = [
     Migration("create", _statements(_TABLES)),
     Migration("needs", _statements(_NEEDS)),
     Migration("search", _statements(_SEARCH)),
+    Migration("settings", _statements(_SETTINGS)),
 ]
 """Version n of the schema is what the first n of them make."""
 
 
-def empty() -> bytes:
-    """Give the contents of a library without clips."""
+def empty(*, indexed: bool = True) -> bytes:
+    """Give the contents of a library without clips; see ``NO_INDEX``."""
     connection = sqlite3.connect(":memory:", isolation_level=None)
     try:
         connection.execute(f"PRAGMA page_size = {PAGE}")
         migrate(connection)
+        if not indexed:
+            connection.execute("INSERT INTO settings VALUES(?, ?)", NO_INDEX)
         data = bytearray(connection.serialize())
     finally:
         connection.close()

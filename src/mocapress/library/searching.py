@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from mocapress.errors import (
+    BusyError,
     FormatError,
+    LimitError,
     MocapressError,
     MotionWarning,
     ParameterError,
@@ -29,17 +31,30 @@ _SHARED = 0.5
 
 @dataclass(frozen=True, slots=True)
 class SearchHit:
-    """A clip that was found, or a stretch of one."""
+    """A clip that was found, or a stretch of one.
+
+    Attributes
+    ----------
+    name
+        Of the clip.
+    start
+        The first frame.
+    end
+        Behind the last frame.
+    seconds
+        The same, from the first frame on; of a clip without a rate, at 120 frames a second.
+    score
+        How far it is from the query: the smaller, the more alike, among hits of one search.
+    labels
+        Of the clip.
+
+    """
 
     name: str
     start: int
-    """The first frame."""
     end: int
-    """Behind the last frame."""
     seconds: tuple[float, float]
-    """The same, from the first frame on; of a clip without a rate, at 120 frames a second."""
     score: float
-    """How far it is from the query: the smaller, the more alike, among hits of one search."""
     labels: tuple[str, ...]
 
     @property
@@ -74,6 +89,7 @@ def completed(library: "Finding") -> Searchable:
     with library.db.reading() as connection:
         kept = index.signatures(connection)
     found, made = dict(kept), dict[int, Entry]()
+    keeping = library.db.writable
     for clip, signature in kept:
         if signature is not None:
             continue
@@ -82,11 +98,14 @@ def completed(library: "Finding") -> Searchable:
         except MocapressError:
             continue  # damaged: `library check` tells
         found[clip] = entry.signature
-        if library.db.writable:
-            with library.db.writing() as connection:
-                index.write(connection, clip, entry)
-        else:
-            made[clip] = entry
+        if keeping:
+            try:
+                with library.db.writing() as connection:
+                    index.write(connection, clip, entry)
+                continue
+            except BusyError:  # others are at work: nothing is lost but time
+                keeping = False
+        made[clip] = entry
     there = {clip: signature for clip, signature in found.items() if signature}
     return Searchable([*there], [*there.values()], made)
 
@@ -206,6 +225,8 @@ def _made(library: "Finding", clip: int, joints: Mapping[str, str] | None = None
         warnings.simplefilter("ignore", MotionWarning)
         try:
             return index.made_of(library.load(clip, strict=False), joints)
+        except LimitError:
+            raise
         except (FormatError, UnsupportedError):  # no motion, as far as can be read
             return index.NOTHING
 

@@ -2,17 +2,16 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from difflib import get_close_matches
 from fractions import Fraction
 from types import MappingProxyType
 from typing import Self, overload
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from mocapress.motion.frame_time import FrameTime
 from mocapress.motion.number_format import NumberFormat
-from mocapress.motion.skeleton import Skeleton
+from mocapress.motion.skeleton import Skeleton, near
 
 MOTION = "motion"
 """Name of the stream that holds the channels of a skeleton's joints."""
@@ -20,29 +19,48 @@ MOTION = "motion"
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One channel of a stream."""
+    """One channel of a stream.
+
+    Attributes
+    ----------
+    name
+        ``joint.kind``, e.g. ``lfemur.rx``.
+    joint
+        Index of the joint, in the skeleton or, without one, in order of appearance; -1 for none.
+    kind
+        ``tx ty tz rx ry rz``, ``l``, or another name.
+    unit
+        ``deg``, ``rad``, ``length`` or empty.
+    decimal
+        How the source printed it; None where the values come from no text.
+
+    """
 
     name: str
-    """``joint.kind``, e.g. ``lfemur.rx``."""
     joint: int
-    """Index of the joint, in the skeleton or, without one, in order of appearance; -1 for none."""
     kind: str
-    """``tx ty tz rx ry rz``, ``l``, or another name."""
     unit: str = ""
-    """``deg``, ``rad``, ``length`` or empty."""
     decimal: NumberFormat | None = None
-    """How the source printed it; None where the values come from no text."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stream:
-    """Numbers sampled at one rate: one row per frame, one column per channel."""
+    """Numbers sampled at one rate: one row per frame, one column per channel.
+
+    Attributes
+    ----------
+    values
+        (F, C) float64, read-only, in the units of the columns, exactly as the source has them.
+    columns
+        Of the values, in order.
+    frame_time
+        Seconds per frame as the file states it; None where it does not (most AMC).
+
+    """
 
     values: NDArray[np.float64]
-    """(F, C) float64, read-only, in the units of the columns, exactly as the source has them."""
     columns: tuple[Column, ...]
     frame_time: FrameTime = None
-    """Seconds per frame as the file states it; None where it does not (most AMC)."""
 
     def __post_init__(self) -> None:
         if self.values.ndim != 2 or self.values.shape[1] != len(self.columns):
@@ -73,12 +91,22 @@ class Clip:
     """One take: named streams, the first of which is the one that most clips have alone.
 
     Immutable: operations give new clips, arrays are read-only.
+
+    Attributes
+    ----------
+    streams
+        At least one.
+    skeleton
+        What the joints of the stream ``motion`` belong to.
+    name
+        Of the take, usually its file's name without suffix.
+    metadata
+        What else the file says, and which skeleton was used (``skeleton``, ``skeleton_found``).
+
     """
 
     streams: Mapping[str, Stream]
-    """At least one."""
     skeleton: Skeleton | None = None
-    """What the joints of the stream ``motion`` belong to."""
     name: str = ""
     metadata: Mapping[str, str] = field(default_factory=dict)
 
@@ -105,6 +133,47 @@ class Clip:
     ) -> Self:
         """Make a clip of one stream, ``motion``, from (F, C) values."""
         return cls({MOTION: Stream(values, columns, frame_time)}, skeleton, name)
+
+    @classmethod
+    def from_array(
+        cls, values: ArrayLike, names: Sequence[str], fps: float | None = None, *, name: str = ""
+    ) -> "Clip":
+        """Make a clip of numbers with names, (F, C); see ``mp.from_array``."""
+        from mocapress.motion.building import from_array
+
+        return from_array(values, names, fps, name=name)
+
+    @classmethod
+    def from_positions(
+        cls,
+        positions: ArrayLike,
+        names: Sequence[str],
+        fps: float | None = None,
+        *,
+        parents: Sequence[int] | None = None,
+        name: str = "",
+    ) -> "Clip":
+        """Make a clip of points in space, (F, P, 3); see ``mp.from_positions``."""
+        from mocapress.motion.building import from_positions
+
+        return from_positions(positions, names, fps, parents=parents, name=name)
+
+    @classmethod
+    def from_quaternions(
+        cls,
+        rotations: ArrayLike,
+        offsets: ArrayLike,
+        parents: Sequence[int],
+        names: Sequence[str],
+        fps: float | None = None,
+        *,
+        root: ArrayLike | None = None,
+        name: str = "",
+    ) -> "Clip":
+        """Make a clip of joints' rotations, (F, J, 4); see ``mp.from_quaternions``."""
+        from mocapress.motion.building import from_quaternions
+
+        return from_quaternions(rotations, offsets, parents, names, fps, root=root, name=name)
 
     @property
     def main(self) -> Stream:
@@ -139,7 +208,7 @@ class Clip:
     @property
     def fps(self) -> float | None:
         """Frames per second of the first stream; None where the source does not say."""
-        return None if self.frame_time is None else float(1 / Fraction(self.frame_time))
+        return float(1 / Fraction(self.frame_time)) if self.frame_time else None
 
     @property
     def duration(self) -> float | None:
@@ -165,6 +234,14 @@ class Clip:
         """Give the number of frames of the first stream."""
         return self.frames
 
+    def __array__(
+        self, dtype: DTypeLike | None = None, copy: bool | None = None
+    ) -> NDArray[np.float64]:
+        """Give ``values`` to NumPy: ``np.asarray(clip)``."""
+        if dtype not in (None, self.values.dtype) or copy:
+            return np.array(self.values, dtype)
+        return self.values
+
     def __bool__(self) -> bool:
         """Say yes, also of a clip without frames."""
         return True
@@ -184,7 +261,7 @@ class Clip:
             if column.joint >= 0 and column.name.rpartition(".")[0] == name
         ]
         if not found:
-            raise KeyError(name)
+            raise KeyError(near(name, [c.name.rpartition(".")[0] for c in self.columns]))
         return self.values[:, found]
 
     def _repr_html_(self) -> str | None:
@@ -286,8 +363,7 @@ class Clip:
     def _column(self, name: str) -> NDArray[np.float64]:
         names = [column.name for column in self.columns]
         if name not in names:
-            near = get_close_matches(name, names, 3)
-            raise KeyError(f"{name!r}; near it are {near}" if near else name)
+            raise KeyError(near(name, names))
         return self.values[:, names.index(name)]
 
     def with_values(self, values: NDArray[np.float64]) -> Self:

@@ -43,7 +43,7 @@ def with_rate(clip: Clip, fps: float | None = None, *, needed: bool = False) -> 
         return clip
     what = (
         f"the sampling rate is not known; {DEFAULT_FPS} frames per second are assumed "
-        "(--fps or fps=... sets another)"
+        "(fps=... sets another)"
     )
     warnings.warn(MotionWarning("assumed-rate", MocapressError(what)), stacklevel=3)
     return clip.with_frame_time(Fraction(1, DEFAULT_FPS))
@@ -144,7 +144,9 @@ def to_amc_clip(clip: Clip) -> Clip:
 
 def _skeleton(clip: Clip) -> Skeleton:
     if clip.skeleton is None:
-        raise UnsupportedError("no skeleton", expected="one beside the file, or given (--asf)")
+        raise UnsupportedError(
+            "no skeleton", expected="one beside the file, or given (asf_path=...)"
+        )
     return clip.skeleton
 
 

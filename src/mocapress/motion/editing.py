@@ -83,7 +83,7 @@ def crop(clip: Clip, start: float = 0, end: float | None = None) -> Clip:
 
     """
     if clip.frame_time is None:
-        raise UnsupportedError("the sampling rate of the clip is not known")
+        raise UnsupportedError("the sampling rate is not known; mp.retime states it")
     step = float(clip.frame_time)
     first = max(round(start / step), 0)
     return clip[first : None if end is None else max(round(end / step), first)]
@@ -125,7 +125,7 @@ def resample(clip: Clip, fps: float) -> Clip:
     """
     frame_time = of_rate(fps)
     if clip.frame_time is None:
-        raise UnsupportedError("the sampling rate of the clip is not known")
+        raise UnsupportedError("the sampling rate is not known; mp.retime states it")
     exact = frame_time / Fraction(clip.frame_time)
     simple = exact.limit_denominator(1000)
     step = float(simple if abs(simple / exact - 1) < _PRINTED else exact)

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 _EULER = re.compile("(?!.*(.)\\1)[xyzXYZ]{3}")
 
 
-def positions(clip: Clip, *, end_sites: bool = False) -> Array:
+def positions(clip: Clip, *, end_sites: bool = False, relative: bool = False) -> Array:
     """Give the joints' positions: the same bits from every build, and in the page.
 
     Parameters
@@ -34,6 +34,9 @@ def positions(clip: Clip, *, end_sites: bool = False) -> Array:
         A clip with a skeleton.
     end_sites
         Whether to append the ends of bones without further joints, in the order of their joints.
+    relative
+        Whether they are relative to the first joint, the root: its place is subtracted. The axes
+        stay those of the space.
 
     Returns
     -------
@@ -47,6 +50,8 @@ def positions(clip: Clip, *, end_sites: bool = False) -> Array:
 
     """
     placed, turned = _place(clip)
+    if relative:
+        placed = placed - placed[:, :1]
     return placed if end_sites else placed[:, : turned.shape[1]]
 
 

@@ -31,24 +31,38 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Markers:
-    """Points in space over time; all arrays are read-only."""
+    """Points in space over time; all arrays are read-only.
+
+    Attributes
+    ----------
+    positions
+        (F, P, 3), in ``unit``; NaN where a marker is missing.
+    valid
+        (F, P): whether a marker was seen. A position can be stored though it is not valid; that of
+        0, 0, 0 never is: many programs write it for a marker that is missing.
+    residuals
+        (F, P), in ``unit``; NaN where a marker is not valid. None where the file has none.
+    cameras
+        (F, P): bit k is set if camera k saw the marker. None where the file has none.
+    labels
+        Names of the markers.
+    unit
+        As the file states it, mostly ``mm`` or ``m``; may be empty.
+    frame_time
+        Seconds per frame, exactly; None where the file does not say.
+    first_frame
+        Number of the first frame, as the file counts.
+
+    """
 
     positions: Array
-    """(F, P, 3), in ``unit``; NaN where a marker is missing."""
     valid: NDArray[np.bool_]
-    """(F, P): whether a marker was seen. A position can be stored though it is not valid; that
-    of 0, 0, 0 never is: many programs write it for a marker that is missing."""
     residuals: Array | None
-    """(F, P), in ``unit``; NaN where a marker is not valid. None where the file has none."""
     cameras: NDArray[np.int64] | None
-    """(F, P): bit k is set if camera k saw the marker. None where the file has none."""
     labels: tuple[str, ...]
     unit: str
-    """As the file states it, mostly ``mm`` or ``m``; may be empty."""
     frame_time: FrameTime
-    """Seconds per frame, exactly; None where the file does not say."""
     first_frame: int
-    """Number of the first frame, as the file counts."""
 
     @property
     def rate(self) -> float | None:
@@ -71,40 +85,69 @@ class Markers:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """A moment that somebody has marked."""
+    """A moment that somebody has marked.
+
+    Attributes
+    ----------
+    seconds
+        Since the time that the file counts from: the first frame is ``first_frame`` / rate.
+    label
+        E.g. ``Foot Strike``.
+    context
+        E.g. ``Left``.
+
+    """
 
     seconds: float
-    """Since the time that the file counts from: the first frame is ``first_frame`` / rate."""
     label: str
-    """E.g. ``Foot Strike``."""
     context: str
-    """E.g. ``Left``."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ForcePlate:
-    """Parameters of a force plate of a C3D; its samples are columns of the stream ``analog``."""
+    """Parameters of a force plate of a C3D; its samples are columns of the stream ``analog``.
+
+    Attributes
+    ----------
+    type
+        As C3D numbers them: which forces its channels measure.
+    corners
+        (4, 3), in the unit of the points.
+    origin
+        (3,) of the plate's sensors, from the middle of its surface, in the unit of the points.
+    channels
+        Columns of the stream ``analog``, counted from 0.
+    calibration
+        (6, n): the matrix that makes forces and moments of the channels.
+
+    """
 
     type: int
-    """As C3D numbers them: which forces its channels measure."""
     corners: Array | None
-    """(4, 3), in the unit of the points."""
     origin: Array | None
-    """(3,) of the plate's sensors, from the middle of its surface, in the unit of the points."""
     channels: tuple[int, ...]
-    """Columns of the stream ``analog``, counted from 0."""
     calibration: Array | None
-    """(6, n): the matrix that makes forces and moments of the channels."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Segments:
-    """Rigid bodies of a C3D: where each is and how it is turned."""
+    """Rigid bodies of a C3D: where each is and how it is turned.
+
+    Attributes
+    ----------
+    matrices
+        (T, R, 4, 4): rotation and position of each, as it acts on columns.
+    reliability
+        (T, R); below 0 where a segment is not valid.
+    labels
+        Names of the segments.
+    frame_time
+        Seconds per frame; None where the file does not say.
+
+    """
 
     matrices: Array
-    """(T, R, 4, 4): rotation and position of each, as it acts on columns."""
     reliability: Array
-    """(T, R); below 0 where a segment is not valid."""
     labels: tuple[str, ...]
     frame_time: FrameTime
 

@@ -27,29 +27,45 @@ class NumberFormat:
 
     A value of a column with ``GENERAL``, ``FIXED``, ``TRIMMED`` or ``SCIENTIFIC`` format lies on a
     decimal grid; a codec may code its index on that grid instead of the bits of the float.
+
+    Attributes
+    ----------
+    kind
+        The rule.
+    digits
+        Significant digits (``GENERAL``), decimals (the others); 0 and unused for ``SHORTEST``.
+    exponent_digits
+        Least number of digits of an exponent: 2 as C prints it, 3 as older Windows libraries do.
+    point_zero
+        Whether a whole number ends in ``.0`` (``TRIMMED``, ``SHORTEST``).
+    bare_point
+        Whether the zero before the point is left out: ``.5``.
+    upper
+        Whether the exponent is written ``E``.
+    plus
+        Whether a number that is not negative begins with ``+``.
+    zeros
+        Whether zeros pad it to its width: ``0012.5``.
+    end_point
+        Whether a whole number ends in a point: ``12.``.
+    java
+        ``SHORTEST``, an exponent below 1e-3 and from 1e7 on: ``1.0E-5``.
+    javascript
+        ``SHORTEST``, an exponent below 1e-6 and from 1e21 on: ``1e-7``.
+
     """
 
     kind: NumberKind
     digits: int = 0
-    """Significant digits (``GENERAL``), decimals (the others); 0 and unused for ``SHORTEST``."""
     exponent_digits: int = 2
-    """Least number of digits of an exponent: 2 as C prints it, 3 as older Windows libraries do."""
     point_zero: bool = False
-    """Whether a whole number ends in ``.0`` (``TRIMMED``, ``SHORTEST``)."""
     bare_point: bool = False
-    """Whether the zero before the point is left out: ``.5``."""
     upper: bool = False
-    """Whether the exponent is written ``E``."""
     plus: bool = False
-    """Whether a number that is not negative begins with ``+``."""
     zeros: bool = False
-    """Whether zeros pad it to its width: ``0012.5``."""
     end_point: bool = False
-    """Whether a whole number ends in a point: ``12.``."""
     java: bool = False
-    """``SHORTEST``, an exponent below 1e-3 and from 1e7 on: ``1.0E-5``."""
     javascript: bool = False
-    """``SHORTEST``, an exponent below 1e-6 and from 1e21 on: ``1e-7``."""
 
     def __str__(self) -> str:
         """Say in words how the numbers look, without the finer points."""

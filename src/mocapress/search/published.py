@@ -8,6 +8,7 @@ import numpy as np
 
 from mocapress.codecs.qssd.quaternions import Array
 from mocapress.errors import ParameterError
+from mocapress.search.patterns import pattern_distances
 from mocapress.search.qssd import bone_turns, dictionary_of, distances, mirrored
 from mocapress.search.standard import StandardMotion
 
@@ -33,6 +34,8 @@ PUBLISHED = {
     "ksvd": Published(partial(_dictionary, sums=True), distances),
 }
 """QSSD with atoms compared as logarithms or as unit quaternions, and K-SVD on logarithms."""
+PATTERNS = "patterns"
+"""Strings of patterns, which are found anew among the clips that are compared."""
 
 
 def distances_by(
@@ -43,7 +46,7 @@ def distances_by(
     Parameters
     ----------
     name
-        Of ``PUBLISHED``.
+        Of ``PUBLISHED``, or ``PATTERNS``.
     query
         The clip that is sought.
     clips
@@ -62,8 +65,10 @@ def distances_by(
         When there is no signature of this name.
 
     """
+    if name == PATTERNS:
+        return pattern_distances(query, clips, mirror=mirror)
     if name not in PUBLISHED:
-        raise ParameterError("by", expected=", ".join(PUBLISHED), found=repr(name))
+        raise ParameterError("by", expected=", ".join((*PUBLISHED, PATTERNS)), found=repr(name))
     by = PUBLISHED[name]
     own = by.signature(query)
     others = np.array([by.signature(clip) for clip in clips])

@@ -30,6 +30,10 @@ _SMOOTH = 5.0
 """Frames at 30 Hz over which the heading is smoothed (standard deviation)."""
 _USUAL_Y = 1.2
 """How much longer a body must be along z than along y to be taken to stand along z."""
+_JUMP = 0.15
+"""Leg lengths in a frame: hips that move farther, and so only there, were put elsewhere."""
+_SUDDEN = 4.0
+"""How many times as far as two frames before and behind: some ten times gravity."""
 _AT = {joint: index for index, joint in enumerate(JOINTS)}
 _LEGS = [[_AT[f"{side}_{joint}"] for joint in SIDED[3:]] for side in ("left", "right")]
 
@@ -49,6 +53,9 @@ class StandardMotion:
     """Length of a leg, thigh and shank, in units of the file."""
     start: float = 0.0
     """Seconds from the clip's first frame to the first of these."""
+    cuts: tuple[int, ...] = ()
+    """Frames at which motion begins that does not go on from the frame before, as where takes were
+    joined or the recording lost its figure."""
 
     @property
     def frames(self) -> int:
@@ -61,8 +68,10 @@ class StandardMotion:
         turn = self.heading[first] if self.frames else 0.0
         root = self.root[key] - (self.root[first] * (1, 0, 1) if self.frames else 0.0)
         start = self.start + first / RATE
+        last = first + len(self.root[key])
+        cuts = tuple(cut - first for cut in self.cuts if first < cut < last)
         return StandardMotion(
-            self.places[key], _turned(root, turn), self.heading[key] - turn, self.leg, start
+            self.places[key], _turned(root, turn), self.heading[key] - turn, self.leg, start, cuts
         )
 
     def mirrored(self) -> "StandardMotion":
@@ -71,7 +80,12 @@ class StandardMotion:
         order = [0, 1, 2, 3, *range(4 + sides, 4 + 2 * sides), *range(4, 4 + sides)]
         flip = np.array([-1.0, 1.0, 1.0])
         return StandardMotion(
-            self.places[:, order] * flip, self.root * flip, -self.heading, self.leg, self.start
+            self.places[:, order] * flip,
+            self.root * flip,
+            -self.heading,
+            self.leg,
+            self.start,
+            self.cuts,
         )
 
 
@@ -147,7 +161,7 @@ def _correspondence(clip: Clip, mapping: Mapping[str, str] | None, places: Array
     raise UnsupportedError(
         "the skeleton has no joints that correspond to " + ", ".join(missing),
         file=_name(clip),
-        expected="a body with arms, legs and a head, or a mapping of names (--joints)",
+        expected="a body with arms, legs and a head, or a mapping of names (joints=...)",
         found=" ".join(clip.skeleton.names[:20])
         + (" ..." if len(clip.skeleton.names) > 20 else ""),
     )
@@ -178,24 +192,37 @@ def _standing(places: Array, name: str | None) -> StandardMotion:
     if not leg > float(np.abs(places).max()) / _FAR:
         raise UnsupportedError("search needs legs that are longer than 0", file=name)
     places = places / leg
-    heading = _headings(places)
+    cuts = _cuts(places[:, 0])
+    heading = _headings(places, cuts)
     root = places[:, 0] - (places[0, 0, 0], float(ankles[..., 1].min()) / leg, places[0, 0, 2])
     return StandardMotion(
         _turned(places - places[:, :1], heading[:, None]),
         _turned(root, heading[0]),
         heading - heading[0],
         leg,
+        cuts=cuts,
     )
 
 
-def _headings(places: Array) -> Array:
+def _cuts(hips: Array) -> tuple[int, ...]:
+    """Give the frames before which hips, (F, 3), are suddenly elsewhere."""
+    moved = np.linalg.norm(np.diff(hips, axis=0), axis=1)
+    usual = np.pad(moved, 2, mode="edge") if len(moved) else moved
+    sudden = moved > np.maximum(_JUMP, _SUDDEN * np.maximum(usual[:-4], usual[4:]))
+    return tuple((np.flatnonzero(sudden) + 1).tolist())
+
+
+def _headings(places: Array, cuts: tuple[int, ...]) -> Array:
     """Give where the body faces, radians about the vertical, by hips and shoulders, smoothed."""
     left = sum(
         places[:, _AT[f"left_{joint}"]] - places[:, _AT[f"right_{joint}"]]
         for joint in ("hip", "shoulder")
     )
     # A body that bends sideways has little that is level, so it counts little in the mean.
-    smooth = gaussian_filter1d(np.asarray(left)[:, [0, 2]], _SMOOTH, axis=0, mode="nearest")
+    pieces = np.split(np.asarray(left)[:, [0, 2]], cuts)
+    smooth = np.concatenate(
+        [gaussian_filter1d(piece, _SMOOTH, axis=0, mode="nearest") for piece in pieces]
+    )
     headings: Array = np.unwrap(np.arctan2(-smooth[:, 1], smooth[:, 0]))
     return headings
 

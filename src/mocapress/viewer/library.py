@@ -5,7 +5,7 @@ import re
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager
 from http import HTTPStatus
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from types import TracebackType
 
 from mocapress.api.loading import load_opened
@@ -33,7 +33,7 @@ class ServedLibrary(AbstractContextManager["ServedLibrary"]):
     Parameters
     ----------
     path
-        Of the library. It is only read.
+        Of the library, or URL of a sharded one. It is only read.
     strict
         Whether clips that have lost frames are refused.
 
@@ -46,10 +46,10 @@ class ServedLibrary(AbstractContextManager["ServedLibrary"]):
 
     """
 
-    def __init__(self, path: Path, *, strict: bool = True) -> None:
+    def __init__(self, path: str | Path, *, strict: bool = True) -> None:
         self._library = open_library(path)
         # Names of files need not be UTF-8, a page is.
-        self.name = _readable(path.name)
+        self.name = _readable(PurePosixPath(path).name or str(path))
         self._strict = strict
         self._reader = ThreadPoolExecutor(1)
 

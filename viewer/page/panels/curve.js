@@ -1,3 +1,6 @@
+const RARE = 0.005; // share of values at each end
+const FAR = 20; // heights of the plot beyond which a line need not be told from a vertical one
+
 /**
  * Trace values over the width of a canvas; of many frames per pixel, the least and the largest.
  * Where there is none, NaN, the curve is interrupted.
@@ -10,7 +13,8 @@
 export function trace(context, values, box, [low, high]) {
   const { left, top, width, height } = box;
   const span = high - low || 1;
-  const y = (value) => top + height - ((value - low) / span) * height;
+  const within = (value) => Math.max(-FAR, Math.min(FAR, (value - low) / span));
+  const y = (value) => top + height - within(value) * height;
   const last = Math.max(1, values.length - 1);
   const pixels = Math.max(1, Math.floor(width));
   context.beginPath();
@@ -42,6 +46,17 @@ export function rangeOf(values) {
     if (value > high && value !== Infinity) high = value;
   }
   return low <= high ? [low, high] : [0, 0];
+}
+
+/** The range of some values without rare ones that lie far outside it; those leave the plot. */
+export function usualRange(values) {
+  const sorted = Float64Array.from(values).filter(Number.isFinite).sort();
+  if (!sorted.length) return [0, 0];
+  const at = (share) => sorted[Math.round(share * (sorted.length - 1))];
+  const [low, high] = [at(RARE), at(1 - RARE)];
+  const room = high - low;
+  const [least, most] = [sorted[0], sorted.at(-1)];
+  return [least < low - room ? low : least, most > high + room ? high : most];
 }
 
 /** A number as short as can be read. */

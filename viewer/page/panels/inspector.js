@@ -1,7 +1,5 @@
-import { rangeOf, short, trace } from "./curve.js";
-import { element, fittedContext, themeColour } from "./element.js";
-
-const KIND_COLOURS = { x: "--x", y: "--y", z: "--z" };
+import { element } from "./element.js";
+import { Plots } from "./plots.js";
 
 /** The panel beside the figure: joints, and the curves of the chosen one's channels. */
 export class Inspector extends EventTarget {
@@ -12,31 +10,33 @@ export class Inspector extends EventTarget {
   constructor(panel, player) {
     super();
     this.panel = panel;
-    this.player = player;
     this.list = panel.querySelector("[role=listbox]");
-    this.plots = panel.querySelector(".plots");
+    this.place = panel.querySelector(".plots");
+    this.plots = new Plots(this.place, player);
     this.search = panel.querySelector("input");
     this.takes = [];
-    this.drawn = [];
     this.search.addEventListener("input", () => this.#filter());
+    this.search.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") this.#chooseFound();
+    });
     this.list.addEventListener("change", () => this.choose(Number(this.list.value)));
-    player.addEventListener("change", () => this.draw());
-    new ResizeObserver(() => this.draw()).observe(this.plots);
   }
 
   /**
    * @param {import("../state/take.js").Take[]} takes the first one's joints are listed; channels of
-   * the others are drawn where they have the same names
+   * the others are drawn where they have the same names; the chosen joint stays where the first one does
    * @param {string[]} colours
    */
   show(takes, colours) {
+    const isKept = takes.length > 0 && takes[0] === this.takes[0];
     this.takes = takes;
     this.colours = colours;
     this.groups = takes.length ? channelGroups(takes[0].clip) : [];
     this.search.value = "";
     this.#filter();
-    const first = this.groups.findIndex((group) => group.channels.length);
-    this.choose(first, { quietly: true });
+    const { root } = takes[0] ?? {};
+    const first = this.groups.findIndex((group, i) => group.channels.length && i >= root);
+    this.choose(isKept ? this.chosen : first, { quietly: true });
   }
 
   /** Choose a joint by its index. */
@@ -48,8 +48,7 @@ export class Inspector extends EventTarget {
   }
 
   draw() {
-    if (this.panel.hidden) return;
-    for (const plot of this.drawn) this.#drawPlot(plot);
+    this.plots.draw();
   }
 
   #filter() {
@@ -65,60 +64,22 @@ export class Inspector extends EventTarget {
     this.list.value = String(this.chosen);
   }
 
-  #plot() {
-    this.drawn = [];
-    const group = this.groups[this.chosen];
-    const rows = (group?.channels ?? []).map((column) => {
-      const [first] = this.takes;
-      const name = first.clip.names[column];
-      const value = element("output", {});
-      const kind = name.slice(name.lastIndexOf(".") + 1);
-      const canvas = element("canvas", {});
-      const series = this.takes.map((take) => take.clip.channels[columnIn(take, name, column)]);
-      const range = padded(rangeOf(series[0]));
-      this.drawn.push({ canvas, value, kind, series, range });
-      const axis = element("i", { className: `axis ${kind.at(-1)}` });
-      const title = element("div", {}, axis, element("b", {}, kindText(kind)), value);
-      return element("div", { className: "plot" }, title, canvas);
-    });
-    if (!rows.length) {
-      const text = group ? "no channels: it moves with its parent" : "";
-      rows.push(element("p", { className: "hint" }, text));
-    }
-    this.plots.replaceChildren(...rows);
-    this.draw();
+  /** Choose the first joint of those found: the one of just this name, or else that is listed first. */
+  #chooseFound() {
+    const wanted = this.search.value.trim().toLowerCase();
+    const found = [...this.list.options].filter((option) => !option.disabled);
+    const same = found.find((option) => option.text.trim().toLowerCase() === wanted);
+    const option = same ?? found[0];
+    if (option) this.choose(Number(option.value));
   }
 
-  #drawPlot({ canvas, value, kind, series, range }) {
-    const { context, width, height } = fittedContext(canvas);
-    const box = { left: 0, top: 3, width, height: height - 6 };
-    const alone = themeColour(KIND_COLOURS[kind.at(-1)] ?? "--accent");
-    const [low, high] = range;
-    if (low < 0 && high > 0) {
-      context.fillStyle = themeColour("--line");
-      context.fillRect(0, box.top + box.height * (high / (high - low)), width, 1);
+  #plot() {
+    const group = this.groups[this.chosen];
+    this.plots.show(this.takes, group?.channels ?? [], this.colours, kindText);
+    if (group && !group.channels.length) {
+      const text = "no channels: it moves with its parent";
+      this.place.replaceChildren(element("p", { className: "hint" }, text));
     }
-    drawGaps(context, series[0], box);
-    context.lineJoin = "round";
-    series.forEach((values, i) => {
-      if (!values) return;
-      trace(context, values, box, range);
-      context.strokeStyle = series.length > 1 ? this.colours[i] : alone;
-      context.lineWidth = i === 0 && series.length > 1 ? 2.5 : 1.25;
-      context.globalAlpha = i === 0 && series.length > 1 ? 0.6 : 1;
-      context.stroke();
-      context.globalAlpha = 1;
-    });
-    const [first] = this.takes;
-    const frame = first.frameAt(this.player.time);
-    context.fillStyle = themeColour("--ink");
-    context.globalAlpha = 0.7;
-    context.fillRect((frame / Math.max(1, first.frames - 1)) * width - 0.5, 0, 1, height);
-    context.globalAlpha = 1;
-    value.textContent = series
-      .filter(Boolean)
-      .map((values, i) => textAt(values, this.takes[i], this.player.time))
-      .join("  ");
   }
 }
 
@@ -149,36 +110,8 @@ function channelGroups(clip) {
   return [...byName.values()];
 }
 
-/** Rows where a marker is missing are shaded. */
-function drawGaps(context, values, box) {
-  context.fillStyle = themeColour("--error");
-  context.globalAlpha = 0.16;
-  const x = (i) => box.left + (i / Math.max(1, values.length - 1)) * box.width;
-  for (let i = 0; i < values.length; i++) {
-    if (!Number.isNaN(values[i])) continue;
-    const begin = i;
-    while (i < values.length && Number.isNaN(values[i])) i++;
-    context.fillRect(x(begin), 0, Math.max(1, x(i) - x(begin)), box.height + 6);
-  }
-  context.globalAlpha = 1;
-}
-
-/** The value at a time; of several values in a frame, the first. */
-function textAt(values, take, time) {
-  const value = values[take.frameAt(time) * Math.max(1, Math.round(values.length / take.frames))];
-  return Number.isNaN(value) ? "missing" : short(value);
-}
-
-function columnIn(take, name, column) {
-  return take.clip.names[column] === name ? column : take.clip.names.indexOf(name);
-}
-
-function padded([low, high]) {
-  const room = (high - low) * 0.04 || Math.abs(high) * 0.05 || 1;
-  return [low - room, high + room];
-}
-
-function kindText(kind) {
+function kindText(name) {
+  const kind = name.slice(name.lastIndexOf(".") + 1);
   const what = { t: "position", r: "rotation" }[kind[0]];
   return /^[tr][xyz]$/.test(kind) ? `${kind[1]} ${what}` : kind;
 }

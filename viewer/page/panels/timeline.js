@@ -1,4 +1,4 @@
-import { rangeOf, short, trace } from "./curve.js";
+import { short, trace, usualRange } from "./curve.js";
 import { element, fittedContext, themeColour } from "./element.js";
 
 /** The plot over time at the foot of the page; to drag is to scrub, and with Shift to mark a stretch. */
@@ -97,7 +97,7 @@ export class Timeline extends EventTarget {
     const context = made.getContext("2d");
     if (!context || !width) return;
     context.scale(ratio, ratio);
-    const high = Math.max(...this.curves.map(({ values }) => rangeOf(values)[1]), 0);
+    const high = Math.max(...this.curves.map(({ values }) => usualRange(values)[1]), 0);
     const box = { left: 5, top: 8, width: width - 10, height: height - 10 };
     context.fillStyle = themeColour("--line");
     context.fillRect(5, height - 2, width - 10, 1);

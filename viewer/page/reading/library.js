@@ -4,7 +4,7 @@ import { FileError } from "./file_error.js";
 import { readOpened } from "./mcz.js";
 
 const APPLICATION_ID = 0x4d435a4c;
-const VERSION = 3;
+const VERSION = 4;
 const TABLES = ["clips", "chunks", "runs", "texts", "skeletons", "labels", "models"];
 const [JOURNAL, NOT_WAL] = [18, 1]; // where the header says that there is a write-ahead log
 
@@ -22,8 +22,12 @@ const RUNS = `
   SELECT stream, first, frames, source, source_first AS sourceFirst FROM runs WHERE clip = ?
   ORDER BY stream, first`;
 
+const NEEDS = "SELECT EXISTS (SELECT 1 FROM needs WHERE clip = ?)";
+
 /** A library in memory; it is only read. */
 export class SqliteLibrary {
+  #hasNeeds = false;
+
   /**
    * @param {Uint8Array} bytes the file, which is changed: a library on a disk keeps a log, one here
    *     does not
@@ -65,6 +69,7 @@ export class SqliteLibrary {
     const tables = this.db.selectValues("SELECT name FROM sqlite_schema WHERE type = 'table'");
     const missing = TABLES.find((table) => !tables.includes(table));
     if (missing) throw new FileError("not the tables of a library", { expected: missing });
+    this.#hasNeeds = tables.includes("needs"); // from version 2 on
   }
 
   /** @returns {import("../panels/library.js").StoredClip[]} */
@@ -98,6 +103,13 @@ export class SqliteLibrary {
     const row = this.#said(() => this.db.selectObject(CLIP, [id]));
     if (!row) throw new FileError("damaged: there is no such clip", { found: `id ${id}` });
     if (!row.head) throw new FileError("holds a file that is no motion", { file: row.name });
+    if (this.#hasNeeds && this.#said(() => this.db.selectValue(NEEDS, [id]))) {
+      throw new FileError(
+        "is predicted from other clips of the library, which the page cannot decode on its own; " +
+          "'mocapress view' of the library plays it",
+        { file: row.name },
+      );
+    }
     return { name: row.name, mcz: await mczOfParts(row, this.assets) };
   }
 

@@ -80,7 +80,8 @@ export class Figure {
     for (let point = 0; point < take.points; point++) {
       let usual = take.isMissing(frame, point) ? MISSING_BALL : this.balls[point];
       if (take.isGone(frame, point)) usual = 0;
-      const radius = this.grown * (point === this.chosen ? CHOSEN_BALL : usual);
+      const isChosen = point === this.chosen && point >= take.root;
+      const radius = this.grown * (isChosen ? CHOSEN_BALL : usual);
       from.fromArray(places, 3 * point);
       this.ballMesh.setMatrixAt(point, matrix.compose(from, turn, size.setScalar(radius)));
     }
@@ -141,6 +142,7 @@ export class Figure {
     this.headEnd = take.bones.find(([, point]) => isHead(point))?.[1] ?? -1;
     this.headMesh.visible = this.headEnd >= 0;
     if (take.clip.markers) return;
+    this.balls.fill(0, 0, take.root);
     take.bones.forEach(([parent, point], i) => {
       take.onStage(0, parent, place);
       from.fromArray(place);

@@ -4,13 +4,16 @@ import { Figure } from "./figure.js";
 import { Floor, gridUnit } from "./floor.js";
 import { Trail } from "./trail.js";
 
+const MOMENTS = 50;
+
 /** One scene: a floor, light, and the figures that stand on it. */
 export class Stage {
   /**
    * @param {import("../state/take.js").Take[]} takes in one space; the first one's bearings count
    * @param {string[]} colours
+   * @param {boolean} [compared] whether the second one is laid over the first
    */
-  constructor(takes, colours) {
+  constructor(takes, colours, compared = false) {
     this.takes = takes;
     const { bearings } = takes[0];
     this.gridUnit = gridUnit(bearings.scale);
@@ -22,7 +25,7 @@ export class Stage {
     this.trails = takes.map(
       (take, i) => new Trail(take, this.figures[i].colour, 0.003 + 0.001 * i),
     );
-    if (takes.length > 1) this.figures[0].beShell(true);
+    if (compared) this.figures[0].beShell(true);
     for (const part of [...this.figures, ...this.trails]) this.world.add(part.group);
     this.scene.add(this.floor.group, this.world, ...lights());
   }
@@ -37,33 +40,57 @@ export class Stage {
     return this.takes[0].bearings.reach;
   }
 
-  /** Show a moment; a camera that follows has the figure in the middle, one that stays the way. */
+  /** Show a moment; a camera that follows has the figures in the middle, one that stays their way. */
   show(time, follows) {
     this.takes.forEach((take, i) => {
       const frame = take.frameAt(time);
       this.figures[i].pose(frame);
       this.trails[i].moveTo(frame);
     });
-    const [first] = this.takes;
-    const [x, z] = follows
-      ? first.wayAt(first.frameAt(time))
-      : [first.bearings.centre[0], first.bearings.centre[2]];
+    const [x, z] = follows ? this.#middle(time) : this.#centre;
     this.world.position.set(-x, 0, -z);
     this.floor.moveTo(x, z);
   }
 
-  /** The point of the first figure that is nearest on the screen: [point, distance in NDC]. */
+  get #centre() {
+    const [x, , z] = this.takes[0].bearings.centre;
+    return [x, z];
+  }
+
+  /** The middle of the figures on their ways, on the floor. */
+  #middle(time) {
+    const places = this.takes.map((take) => take.wayAt(take.frameAt(time)));
+    return [0, 1].map((k) => places.reduce((sum, place) => sum + place[k], 0) / places.length);
+  }
+
+  /** How far from their middle figures are at most, looking at some frames. */
+  get spread() {
+    if (this.takes.length < 2) return 0;
+    const seconds = Math.max(...this.takes.map((take) => take.seconds));
+    const times = Array.from({ length: MOMENTS }, (_, i) => (seconds * i) / MOMENTS);
+    const away = (time) => {
+      const [x, z] = this.#middle(time);
+      return this.takes.map((take) => {
+        const [a, b] = take.wayAt(take.frameAt(time));
+        return Math.hypot(a - x, b - z);
+      });
+    };
+    return Math.max(...times.flatMap(away));
+  }
+
+  /** The point that is nearest on the screen: {take, point, away in NDC}. */
   nearest(camera, x, y) {
     const place = new Vector3();
-    const { places } = this.figures[0];
-    let best = [-1, Infinity];
-    for (let point = 0; point < this.takes[0].points; point++) {
-      place
-        .fromArray(places, 3 * point)
-        .add(this.world.position)
-        .project(camera);
-      const away = Math.hypot((place.x - x) * camera.aspect, place.y - y);
-      if (away < best[1]) best = [point, away];
+    const best = { take: null, point: -1, away: Infinity };
+    for (const { take, places } of this.figures) {
+      for (let point = take.root; point < take.points; point++) {
+        place
+          .fromArray(places, 3 * point)
+          .add(this.world.position)
+          .project(camera);
+        const away = Math.hypot((place.x - x) * camera.aspect, place.y - y);
+        if (away < best.away) Object.assign(best, { take, point, away });
+      }
     }
     return best;
   }

@@ -5,24 +5,25 @@ import { Stage } from "./stage.js";
 const [AMBER, RED] = [new Color("#ffb020"), new Color("#f0314f")];
 
 /**
- * Build the stages of a lineup: one for two takes that are overlaid, else one for each figure.
+ * Build the stages of a lineup: one for all where they are compared or in one scene, else one each.
  *
  * @param {import("../state/lineup.js").Lineup} lineup
  */
 export function stagesOf(lineup) {
-  const { colours, takes } = lineup;
-  if (lineup.isOverlaid) return [new Stage(takes, colours)];
-  return lineup.figures.map((take) => new Stage([take], [colours[takes.indexOf(take)]]));
+  const { colours, takes, figures, mode } = lineup;
+  const own = (take) => colours[takes.indexOf(take)];
+  if (mode === "apart") return figures.map((take) => new Stage([take], [own(take)]));
+  return [new Stage(figures, figures.map(own), mode === "compare")];
 }
 
 /** Colour the figures at a time, by error where the lineup says so, and mark the chosen joint. */
 export function paint(lineup, stages, time, chosen, mark) {
-  const { comparison, errorsShown, takes } = lineup;
+  const { comparison, errorsShown, takes, isCompared } = lineup;
   for (const stage of stages) {
     stage.figures.forEach((figure, i) => {
-      const decoded = comparison && figure.take === takes[1] && errorsShown;
+      const decoded = isCompared && figure.take === takes[1] && errorsShown;
       const isFirst = figure.take === takes[0];
-      const marked = isFirst || comparison ? chosen : -1;
+      const marked = isFirst || isCompared ? chosen : -1;
       const frame = figure.take.frameAt(time);
       const painter = decoded ? painterOf(comparison, frame) : painterOfGaps(figure.take, frame);
       figure.paint(painter, i === stage.figures.length - 1 || isFirst ? marked : -1, mark);

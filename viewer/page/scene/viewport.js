@@ -58,8 +58,7 @@ export class Viewport {
   /** Look at the whole from the front and a little from the side. */
   frame() {
     if (!this.stages.length) return;
-    const widest = Math.max(...this.stages.map((stage) => stage.reach));
-    const reach = this.follows ? 0 : widest;
+    const reach = Math.max(...this.stages.map((stage) => (this.follows ? stage.spread : stage.reach)));
     const half = (FIELD_OF_VIEW / 2) * (Math.PI / 180);
     const across = Math.atan(Math.tan(half) * this.camera.aspect);
     const distance = Math.max(
@@ -91,20 +90,20 @@ export class Viewport {
     }));
   }
 
-  /** The stage and its point under a place on the canvas; -1 where there is none near. */
+  /** The take and its point under a place on the canvas: {take, point}; null where there is none near. */
   pick(x, y) {
     const { cells } = this;
     const index = cells.findIndex(
       (cell) => x >= cell.x && x < cell.x + cell.width && y >= cell.y && y < cell.y + cell.height,
     );
-    if (index < 0) return { stage: -1, point: -1 };
+    if (index < 0) return null;
     const cell = cells[index];
-    const [point, away] = this.stages[index].nearest(
+    const { take, point, away } = this.stages[index].nearest(
       this.camera,
       (2 * (x - cell.x)) / cell.width - 1,
       1 - (2 * (y - cell.y)) / cell.height,
     );
-    return { stage: index, point: (away * cell.height) / 2 < 24 ? point : -1 };
+    return (away * cell.height) / 2 < 24 ? { take, point } : null;
   }
 
   /** Draw, if anything changed. */

@@ -1,6 +1,12 @@
+/** Of a figure on the stage. */
+export const USUAL_HEIGHT = 1.7;
+
 const FRAMES = 240; // that are looked at, spread over the clip
-const USUAL_HEIGHT = 1.7;
 const MANY = 20; // markers among which one may be a stray
+const NEAR_FLOOR = 0.06; // of the figure's size
+const MOST_NEAR = 5; // points that stand on the floor: more of them say no more
+const POINT_COUNTS = 0.15; // beside a figure that is upright all the time
+const UPRIGHT = 0.6; // from feet to head, of the figure's size
 const UPPER = /head|neck|skull|face|[fb]hd$|^c7$|clav$/i;
 const LOWER = /foot|toe|ankle|heel|[lr](ank|hee)$/i;
 const AXES = [
@@ -28,19 +34,24 @@ const AXES = [
  * @param {Float32Array} positions (F, P, 3)
  * @param {number} points P
  * @param {string[]} names of the joints, the first of the points
- * @param {[number, number]} [given] the up axis, where it is known
- * @param {Uint8Array} [gaps] of markers (F, P): not 0 where one is missing. Their way is that of their
- *     middle; else it is that of the first point
+ * @param {Object} [known]
+ * @param {[number, number]} [known.up] the up axis
+ * @param {Uint8Array} [known.gaps] of markers (F, P): not 0 where one is missing. Their way is that of
+ *     their middle; else it is that of the root
+ * @param {number} [known.root] the joint that leads the way; points before it are no part of the figure
+ * @param {Float32Array} [known.rest] places of the joints at rest
  * @returns {Bearings}
  */
-export function findBearings(positions, points, names, given, gaps) {
-  const frames = sampled(positions, points, gaps);
-  const up = given ?? upAxis(frames, names);
+export function findBearings(positions, points, names, { up: given, gaps, root = 0, rest } = {}) {
+  const all = sampled(positions, points, gaps);
+  const frames = root ? all.map((frame) => frame.subarray(3 * root)) : all;
+  if (root) names = names.slice(root);
   const strays = gaps && points >= MANY ? 1 : 0;
   const sizes = frames.map((frame) =>
     Math.max(...[0, 1, 2].map((axis) => extent(frame, axis, strays))),
   );
   const size = quantile(sizes, 0.75) || 1;
+  const up = given ?? upAxis(frames, names, size, rest?.subarray(3 * root));
   const scale = USUAL_HEIGHT / size;
   const heights = frames.map((frame) => lowest(frame, up));
   const floor = quantile(heights, 0.05) || 0;
@@ -48,9 +59,9 @@ export function findBearings(positions, points, names, given, gaps) {
   const low = [Infinity, Infinity];
   const high = [-Infinity, -Infinity];
   for (const frame of frames) {
-    const all = gaps ? points : 1;
-    const root = turn(...[0, 1, 2].map((axis) => mean(frame, [...Array(all).keys()], axis)));
-    [root[0], root[2]].forEach((value, k) => {
+    const leading = [...Array(gaps ? points : 1).keys()];
+    const place = turn(...[0, 1, 2].map((axis) => mean(frame, leading, axis)));
+    [place[0], place[2]].forEach((value, k) => {
       low[k] = Math.min(low[k], value);
       high[k] = Math.max(high[k], value);
     });
@@ -111,30 +122,37 @@ function withoutGaps(frame, gaps) {
 }
 
 /**
- * From feet to head, where the names tell; else where figures are long and wander little. Files
- * have y or z up, so that x is taken only where it is plain.
+ * From feet to head, where the names tell; and away from where most points touch the floor. Who does
+ * push-ups lies most of the time: how the skeleton stands at rest counts, as far as the figure ever
+ * stands so in motion. Without names, where figures are long and wander little.
  */
-function upAxis(frames, names) {
-  const towards = [0, 0, 0];
+function upAxis(frames, names, size, rest) {
   const upper = indices(names, UPPER);
   const lower = indices(names, LOWER);
-  const named = upper.length > 0 && lower.length > 0;
-  for (const frame of frames) {
-    for (let axis = 0; axis < 3; axis++) {
-      towards[axis] += named
-        ? mean(frame, upper, axis) - mean(frame, lower, axis)
-        : extent(frame, axis);
-    }
-  }
-  if (!named) {
-    const travel = [0, 1, 2].map((axis) => frames.length * range(frames.map((f) => f[axis])));
-    [0, 1, 2].forEach((axis) => (towards[axis] -= travel[axis]));
-    const axis = towards[2] > 1.2 * towards[1] ? 2 : 1;
-    return [axis, 1];
-  }
-  const lengths = towards.map(Math.abs);
-  const axis = lengths.indexOf(Math.max(...lengths));
-  return [axis, towards[axis] < 0 ? -1 : 1];
+  if (!upper.length || !lower.length) return longAxis(frames);
+  const towards = (frame, axis) => mean(frame, upper, axis) - mean(frame, lower, axis);
+  const standing = rest ? [0, 1, 2].map((axis) => towards(rest, axis)) : [0, 0, 0];
+  const scores = AXES.map(([axis, sign]) => {
+    const upright = frames.map((frame) => (sign * towards(frame, axis)) / size);
+    const heights = frames.map((frame) => lowest(frame, [axis, sign]));
+    const floor = quantile(heights, 0.05);
+    const isNear = (x, i) => i % 3 === axis && sign * x - floor < NEAR_FLOOR * size;
+    const near = average(frames.map((frame) => frame.filter(isNear).length));
+    const atRest = sign * standing[axis] > 0.8 * Math.hypot(...standing);
+    const ever = Math.min(1, Math.max(0, (quantile(upright, 0.98) ?? 0) / UPRIGHT));
+    return average(upright) + POINT_COUNTS * Math.min(MOST_NEAR, near) + (atRest ? ever : 0);
+  });
+  return AXES[scores.indexOf(Math.max(...scores))];
+}
+
+/** Files have y or z up; x is not thought of. */
+function longAxis(frames) {
+  const lengths = [0, 1, 2].map(
+    (axis) =>
+      average(frames.map((frame) => extent(frame, axis))) -
+      range(frames.map((frame) => frame[axis])),
+  );
+  return [lengths[2] > 1.2 * lengths[1] ? 2 : 1, 1];
 }
 
 /** From its left to its right side, and from there to the front, where the names tell. */
@@ -155,6 +173,10 @@ function facing(frame, names, turn) {
 
 function indices(names, pattern) {
   return [...names.keys()].filter((i) => pattern.test(names[i]));
+}
+
+function average(values) {
+  return values.length ? values.reduce((sum, value) => sum + value, 0) / values.length : 0;
 }
 
 function mean(frame, joints, axis) {

@@ -22,9 +22,12 @@ export class Take {
     const { skeleton, markers } = clip;
     this.jointNames = skeleton ? skeleton.joints.map((joint) => joint.name) : [];
     if (markers) this.jointNames = markers.labels.slice(0, markers.drawn);
+    this.root = markers ? 0 : rootOf(this);
+    /** Points that lead the way: the root, of markers those most seen. */
+    this.leading = markers ? mostSeen(clip.gaps, this.points) : [this.root];
     /** Bones as pairs of points, of joints the parent first. */
-    this.bones = markers?.bones ?? this.parents.map((parent, i) => [parent, i]).filter(([p]) => p >= 0);
-    this.leading = markers ? mostSeen(clip.gaps, this.points) : [0];
+    this.bones = markers?.bones ?? this.parents.map((parent, i) => [parent, i]);
+    this.bones = this.bones.filter(([parent]) => parent >= this.root);
     this.standUp();
   }
 
@@ -49,6 +52,7 @@ export class Take {
 
   /** Take other bearings: those of the original for what was decoded, or another up axis. */
   standAs(bearings) {
+    if (this.bearings === bearings) return;
     this.bearings = bearings;
     const { up, scale, floor } = bearings;
     const turn = turnUp(up);
@@ -61,7 +65,14 @@ export class Take {
 
   /** Stand with an axis up; without one, with that which seems to be. */
   standUp(up) {
-    this.standAs(findBearings(this.positions, this.points, this.jointNames, up, this.clip.gaps));
+    if (up || !this.own) {
+      const { root, clip } = this;
+      const known = { up, gaps: clip.gaps, root, rest: clip.skeleton && atRest(clip.skeleton) };
+      const found = findBearings(this.positions, this.points, this.jointNames, known);
+      if (up) return this.standAs(found);
+      this.own = found;
+    }
+    this.standAs(this.own);
   }
 
   /** Place of a point on the stage, into `out`. */
@@ -88,6 +99,40 @@ export class Take {
   wayAt(frame) {
     return this.points ? [this.way[2 * frame], this.way[2 * frame + 1]] : [0, 0];
   }
+}
+
+/**
+ * The first joint that moves or branches: where others stand still above it, as some tools export the
+ * scene's origin, they are no part of the figure.
+ */
+function rootOf({ positions, parents, points, frames }) {
+  let root = 0;
+  while (2 * root < points && isStill(root) && isOnlyChild(root + 1)) root++;
+  return 2 * root < points ? root : 0; // a chain of links in a row is a figure, too
+
+  function isStill(point) {
+    const start = positions.subarray(3 * point, 3 * point + 3);
+    for (let frame = 1; frame < frames; frame++) {
+      const at = 3 * (frame * points + point);
+      if (start.some((x, axis) => positions[at + axis] !== x)) return false;
+    }
+    return true;
+  }
+
+  function isOnlyChild(point) {
+    const parent = point - 1;
+    return parents[point] === parent && parents.lastIndexOf(parent) === point;
+  }
+}
+
+/** Places of the joints where all channels are 0, but for the root's. */
+function atRest({ joints }) {
+  const places = new Float32Array(3 * joints.length);
+  joints.forEach(({ parent, offset }, i) => {
+    if (parent < 0) return;
+    for (let k = 0; k < 3; k++) places[3 * i + k] = places[3 * parent + k] + offset[k];
+  });
+  return places;
 }
 
 /** A quarter of the markers, whose middle does not jump when others come and go. */

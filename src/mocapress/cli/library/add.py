@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from mocapress.cli.library.opening import Cluster, File, opened, sharded
-from mocapress.cli.options import Asf, Debug, Jobs, Json
+from mocapress.cli.options import Asf, Debug, Jobs, Json, Limit, Quiet
 
 
 def add(
@@ -15,8 +15,8 @@ def add(
         list[str],
         typer.Argument(
             metavar="FILES...",
-            help="Motion files, folders of them, or tar archives; - is a tar archive on stdin. Of "
-            "a sharded library files and folders, also as URLs.",
+            help="Motion files, folders of them, or tar archives; - is a tar archive on stdin, "
+            "which a sharded library does not take. Of such a one also as URLs.",
         ),
     ],
     into: Annotated[
@@ -35,10 +35,18 @@ def add(
         typer.Option("--label", help="Label for the clips; may be repeated.", metavar="LABEL"),
     ] = None,
     index: Annotated[
-        bool, typer.Option("--index/--no-index", help="Whether to index clips for search at once.")
-    ] = True,
+        bool | None,
+        typer.Option(
+            "--index/--no-index",
+            help="Whether to index clips for search at once; by default as the library was "
+            "created, with an index if nothing was said.",
+            show_default=False,
+        ),
+    ] = None,
+    limit: Limit = None,
     cluster: Cluster = None,
     jobs: Jobs = 1,
+    quiet: Quiet = False,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
@@ -62,25 +70,30 @@ def add(
 
         if asf is not None:
             usage("a sharded library takes the skeletons that lie beside the files, no other")
-        with opened(file, "a", debug=debug) as library:
+        with opened(file, "a", debug=debug, limit=limit) as library:
+            shards = sharded(library, cluster)
+            assert shards is not None
             add_shards(
-                sharded(library, cluster),
-                inputs,
-                into,
-                codec=made,
-                model=learned,
+                shards,
+                [
+                    shards.plan(
+                        name, into, codec=made, model=learned, labels=label or [], index=index
+                    )
+                    for name in inputs
+                ],
                 labels=label or [],
-                index=index,
                 cluster=cluster,
                 jobs=jobs,
                 json=json,
+                quiet=quiet,
                 debug=debug,
             )
         return
     paths = [Path(name) for name in inputs]
-    found = Inputs(paths, into.strip("/"), None if asf is None else str(asf))
-    say_what_is_left_out(paths, endings())
-    with opened(file, "a", debug=debug) as library:
+    found = Inputs(paths, into.strip("/"), None if asf is None else str(asf), limit)
+    if not quiet:
+        say_what_is_left_out(paths, endings())
+    with opened(file, "a", debug=debug, limit=limit) as library:
         sharded(library, cluster)
         adder = library.adder(made, learned, overwrite=True, indexed=index)
 
@@ -90,6 +103,7 @@ def add(
             lambda job: found.add(job, library, adder, label or []),
             threads=jobs,
             json=json,
+            quiet=quiet,
             debug=debug,
             whole=found.size,
         )

@@ -17,6 +17,7 @@ def add_all(
     *,
     threads: int,
     json: bool,
+    quiet: bool,
     debug: bool,
     whole: float | None = None,
 ) -> None:
@@ -28,6 +29,7 @@ def add_all(
         json=json,
         show=_show,
         total=lambda done: _total(done, library.path),
+        quiet=quiet,
         debug=debug,
         whole=whole,
         close=library.close,

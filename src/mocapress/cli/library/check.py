@@ -1,10 +1,10 @@
 """``library check``."""
 
 from mocapress.cli.library.opening import File, opened
-from mocapress.cli.options import Debug, Json
+from mocapress.cli.options import Debug, Json, Quiet
 
 
-def check(file: File, json: Json = False, debug: Debug = False) -> None:
+def check(file: File, json: Json = False, quiet: Quiet = False, debug: Debug = False) -> None:
     """Read everything in a library and check its checksums, which is quick; exit code 3 if damaged.
 
     Names the clips that have something on a damaged page. verify decodes them, too.
@@ -24,5 +24,5 @@ def check(file: File, json: Json = False, debug: Debug = False) -> None:
         say(f"{name or file}: {what}")
     if faults:
         raise typer.Exit(3)
-    if not json:
+    if not (json or quiet):
         print(f"{file}: {number} clips, sound")

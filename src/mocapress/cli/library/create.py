@@ -19,6 +19,13 @@ def create(
             metavar="SIZE",
         ),
     ] = None,
+    index: Annotated[
+        bool,
+        typer.Option(
+            "--index/--no-index",
+            help="Whether clips are indexed for search when they are added; reindex does it later.",
+        ),
+    ] = True,
     debug: Debug = False,
 ) -> None:
     """Make a library without clips; a sharded one of a URL or a name that ends with a slash."""
@@ -30,13 +37,14 @@ def create(
             from mocapress.library import sharded
             from mocapress.library.sharded.manifest import SHARD_BYTES
 
-            sharded.create(file, _bytes(shard_size) if shard_size else SHARD_BYTES)
+            size = _bytes(shard_size) if shard_size else SHARD_BYTES
+            sharded.create(file, size, indexed=index)
             return
         if shard_size:
             usage("--shard-size is of sharded libraries: a URL, or a name that ends with a slash")
         from mocapress.library.database import create
 
-        create(Path(file))
+        create(Path(file), indexed=index)
 
 
 def _bytes(text: str) -> int:

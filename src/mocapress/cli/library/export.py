@@ -14,7 +14,7 @@ from mocapress.cli.library.opening import (
     opened,
     write_files,
 )
-from mocapress.cli.options import Debug, Force, Jobs, Json, Limit
+from mocapress.cli.options import Debug, Force, Jobs, Json, Limit, Quiet
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -31,6 +31,7 @@ def export(
     jobs: Jobs = 1,
     force: Force = False,
     json: Json = False,
+    quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Write clips as .mcz files, with their skeletons; nothing is coded again but shared frames."""
@@ -46,4 +47,4 @@ def export(
             job.modified = clip.modified
             return library.read_mcz(clip)
 
-        write_files(files, read, threads=jobs, json=json, debug=debug)
+        write_files(files, read, threads=jobs, json=json, quiet=quiet, debug=debug)

@@ -14,7 +14,7 @@ from mocapress.cli.library.opening import (
     opened,
     write_files,
 )
-from mocapress.cli.options import Debug, Force, Jobs, Json, Limit, Models
+from mocapress.cli.options import Debug, Force, Jobs, Json, Limit, Models, Quiet
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -38,6 +38,7 @@ def extract(
     jobs: Jobs = 1,
     force: Force = False,
     json: Json = False,
+    quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Restore files with their names, folders and times, skeletons (ASF) included."""
@@ -59,4 +60,4 @@ def extract(
             job.modified = item.modified
             return item.read(salvage)
 
-        write_files(files, read, threads=jobs, json=json, debug=debug)
+        write_files(files, read, threads=jobs, json=json, quiet=quiet, debug=debug)

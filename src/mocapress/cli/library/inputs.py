@@ -16,7 +16,7 @@ from mocapress.errors import FormatError, ParameterError
 from mocapress.formats import by_name, formats, suffixes
 from mocapress.library.adding import Added, Adder, Beside, Extra
 from mocapress.library.library import Library, beside, modified_of
-from mocapress.source import ONLY_ONE, Source, choose_beside
+from mocapress.source import LIMIT, ONLY_ONE, Source, choose_beside
 from mocapress.source import Beside as Used
 
 ARCHIVES = (".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tbz2", ".tar.xz", ".txz")
@@ -72,6 +72,8 @@ class Inputs:
     into: str
     """Folder in the library; empty for none."""
     asf: str | None
+    limit: int | None = None
+    """Bytes that may be decoded of a file; None for the usual number."""
     left_out: int = 0
     """Members of archives that are no motion."""
     _origins: dict[str, Path] = field(default_factory=dict)
@@ -184,7 +186,7 @@ class Inputs:
         known = library.has(name, changed.st_size, changed.st_mtime_ns)
         if known and not labels and not turned:
             return library.unchanged(name)
-        source = job.opened()
+        source = job.opened(self.limit)
         if source.format is not None and source.format.read_skeleton is not None:
             return library.add_companion(source, name)
         extra = Extra(modified_of(source), labels, beside=lambda: beside(source, name))
@@ -227,7 +229,7 @@ class Inputs:
             found.append(chosen)
             return Used(chosen[0], chosen[1], lambda: chosen[2])
 
-        source = Source(job.data, own, look)
+        source = Source(job.data, own, look, limit=LIMIT if self.limit is None else self.limit)
         if source.format is not None and source.format.read_skeleton is not None:
             return library.add_companion(source, name, job.changed)
 

@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from mocapress.cli.library.opening import File, Patterns, chosen, opened
-from mocapress.cli.options import Debug
+from mocapress.cli.options import Debug, Quiet
 
 Labels = list[str] | None
 
@@ -19,6 +19,7 @@ def label(
     remove: Annotated[
         Labels, typer.Option("--remove", help="Label to take away.", metavar="LABEL")
     ] = None,
+    quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Give clips labels or take them away; without --add and --remove, list all labels."""
@@ -34,4 +35,5 @@ def label(
     with opened(file, "a", debug=debug) as library:
         clips = chosen(library, patterns)
         library.label_all(clips, add or [], remove or [])
-    print(f"{len(clips)} clips")
+    if not quiet:
+        print(f"{len(clips)} clips")

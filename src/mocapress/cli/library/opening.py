@@ -142,6 +142,7 @@ def write_files(
     *,
     threads: int,
     json: bool,
+    quiet: bool,
     debug: bool,
 ) -> None:
     """Write to each job's target what is read for it."""
@@ -159,5 +160,6 @@ def write_files(
         json=json,
         show=lambda job: print(f"{job.target}: {job.result['bytes']} bytes"),
         total=lambda done: print(f"{len(done)} files"),
+        quiet=quiet,
         debug=debug,
     )

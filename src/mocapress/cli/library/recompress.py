@@ -13,7 +13,7 @@ from mocapress.cli.library.opening import (
     opened,
     sharded,
 )
-from mocapress.cli.options import Debug, Jobs, Json, Models
+from mocapress.cli.options import Debug, Jobs, Json, Limit, Models, Quiet
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -29,9 +29,11 @@ def recompress(
         int | None, typer.Option("--level", min=1, max=9, help="1 (fast) to 9 (small).")
     ] = None,
     models: Models = None,
+    limit: Limit = None,
     cluster: Cluster = None,
     jobs: Jobs = 1,
     json: Json = False,
+    quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Code clips anew; their files and numbers stay the same.
@@ -45,14 +47,21 @@ def recompress(
     from mocapress.codecs import Scope
 
     made = chosen_codec(codec, level)
-    with opened(file, "a", debug=debug, models=open_models(models or [])) as library:
+    with opened(file, "a", debug=debug, models=open_models(models or []), limit=limit) as library:
         clips = chosen(library, patterns)
         shards = sharded(library, cluster)
         if shards is not None:
             from mocapress.cli.library.shards import recompress_shards
 
             recompress_shards(
-                shards, clips, made, cluster=cluster, jobs=jobs, json=json, debug=debug
+                shards,
+                clips,
+                made,
+                cluster=cluster,
+                jobs=jobs,
+                json=json,
+                quiet=quiet,
+                debug=debug,
             )
             return
         together: dict[str, tuple[int, int]] = {}
@@ -72,6 +81,7 @@ def recompress(
             json=json,
             show=lambda job: print(f"{job.source}: {_sizes([job])}"),
             total=lambda done: print(f"{len(done)} clips: {_sizes(done)}"),
+            quiet=quiet,
             debug=debug,
             close=library.close,
         )

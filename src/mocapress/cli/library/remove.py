@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from mocapress.cli.library.opening import File, chosen, opened
-from mocapress.cli.options import Debug
+from mocapress.cli.options import Debug, Quiet
 
 
 def remove(
@@ -13,11 +13,12 @@ def remove(
     patterns: Annotated[
         list[str], typer.Argument(metavar="CLIPS...", help="Names, folders or globs.")
     ],
+    quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Remove clips, all of them or none; clips that share frames with them stay whole."""
     with opened(file, "a", debug=debug) as library:
         clips = chosen(library, patterns)
         library.remove(*clips)
-    for clip in clips:
+    for clip in [] if quiet else clips:
         print(f"{clip.name}: removed")

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from mocapress.cli.library.opening import File, Label, Patterns, chosen, opened
-from mocapress.cli.options import Debug, Force
+from mocapress.cli.options import Debug, Force, Limit, Quiet
 
 
 def sheet(
@@ -21,7 +21,9 @@ def sheet(
     most: Annotated[
         int, typer.Option("--most", help="Clips to draw, evenly spread over those chosen.", min=1)
     ] = 300,
+    limit: Limit = None,
     force: Force = False,
+    quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Draw a contact sheet: figures of a few moments of each clip. Needs Pillow."""
@@ -31,7 +33,7 @@ def sheet(
     from mocapress.storage import check_targets
 
     check_kind(output, "-o")
-    with opened(file, debug=debug) as library:
+    with opened(file, debug=debug, limit=limit) as library:
         check_targets([output], force=force)
         clips = [clip for clip in chosen(library, patterns, label) if clip.frames]
         if not clips:
@@ -43,6 +45,7 @@ def sheet(
     for error in failures:
         say(message(error, error.file or ""))
     left = f" of {len(clips)} (--most)" if len(drawn) < len(clips) else ""
-    print(f"{output}: {len(drawn)} clips{left}, {picture.width} x {picture.height} pixels")
+    if not quiet:
+        print(f"{output}: {len(drawn)} clips{left}, {picture.width} x {picture.height} pixels")
     if failures:
         raise typer.Exit(1)

@@ -11,7 +11,7 @@ from mocapress.cli.library.opening import (
     opened,
     sharded,
 )
-from mocapress.cli.options import Debug, Jobs, Json, Limit, Models
+from mocapress.cli.options import Debug, Jobs, Json, Limit, Models, Quiet
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -25,10 +25,11 @@ def verify(
     cluster: Cluster = None,
     jobs: Jobs = 1,
     json: Json = False,
+    quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Decode clips and check all their checksums; exit code 3 if one is damaged."""
-    from mocapress.cli.batch import run, usage
+    from mocapress.cli.batch import run
     from mocapress.cli.models import open_models
     from mocapress.errors import CorruptError
 
@@ -36,11 +37,11 @@ def verify(
         clips = chosen(library, patterns)
         shards = sharded(library, cluster)
         if shards is not None:
-            if limit is not None:
-                usage("--limit is for libraries of one file")
             from mocapress.cli.library.shards import verify_shards
 
-            verify_shards(shards, clips, cluster=cluster, jobs=jobs, json=json, debug=debug)
+            verify_shards(
+                shards, clips, cluster=cluster, jobs=jobs, json=json, quiet=quiet, debug=debug
+            )
             return
 
         def work(job: "Job") -> dict[str, Any]:
@@ -57,5 +58,6 @@ def verify(
             show=lambda job: print(f"{job.source}: ok"),
             total=lambda done: print(f"{len(done)} clips are sound"),
             failure_code=3,
+            quiet=quiet,
             debug=debug,
         )

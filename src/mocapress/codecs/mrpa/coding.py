@@ -114,7 +114,26 @@ def decode_chunk(chunk: Chunk, plan: Plan, limit: int, others: Others) -> Values
 
     """
     reader = Reader(chunk.payload, f"MRPA chunk from frame {chunk.first}")
-    channels = len(plan)
+    pieces = read_pieces(reader, chunk, len(plan), others)
+    values = np.empty((chunk.frames, len(plan)))
+    try:
+        parents = beside(values, pieces)
+        rest = reader.raw(reader.left)
+        _core.mrpa_decode(rest, values, parents, table_of(pieces), plan, limit)
+    except ValueError as error:
+        raise reader.fail(str(error)) from error
+    return values
+
+
+def read_pieces(reader: Reader, chunk: Chunk, channels: int, others: Others) -> list[Piece]:
+    """Read what stands before the values of a chunk.
+
+    Raises
+    ------
+    CorruptError
+        When it is not what ``encode_chunk`` makes, or what it needs is not there.
+
+    """
     pieces = []
     left = chunk.frames
     for _ in range(reader.count(2)):
@@ -124,14 +143,7 @@ def decode_chunk(chunk: Chunk, plan: Plan, limit: int, others: Others) -> Values
         pieces.append(Piece(frames, parent))
     if left:
         raise reader.fail(f"{left} frames are in no piece")
-    values = np.empty((chunk.frames, channels))
-    try:
-        parents = beside(values, pieces)
-        rest = reader.raw(reader.left)
-        _core.mrpa_decode(rest, values, parents, table_of(pieces), plan, limit)
-    except ValueError as error:
-        raise reader.fail(str(error)) from error
-    return values
+    return pieces
 
 
 def _read_parent(

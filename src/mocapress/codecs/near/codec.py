@@ -56,7 +56,7 @@ class Near(Codec):
     """Where nothing else is asked for: 1 (1 cm of a figure 1.7 m high) to 9 (0.01 cm)."""
     max_error: float = inf
     """Largest error of any value, in the unit of its channel; instead of all others."""
-    chunk: int = 1024
+    chunk: int = 4096
     """Frames that are decoded together."""
 
     def __post_init__(self) -> None:

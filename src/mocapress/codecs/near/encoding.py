@@ -9,6 +9,7 @@ from mocapress import _core
 from mocapress.codecs.contract import Chunk, Encoded
 from mocapress.codecs.near.goal import Goal, Measure
 from mocapress.codecs.near.header import COARSE, STEPS_PER_OCTAVE, joints_of, pack_header
+from mocapress.codecs.near.turning import Turning, turnings_of
 from mocapress.errors import VerificationError
 from mocapress.motion import Skeleton, Stream
 
@@ -45,8 +46,13 @@ class Encoder:
         self.value_most = np.full(stream.channels, max_error)
         self.weights = np.ones(self.measure.points)
         self.shares = self._shares(skeleton)
-        self.exponents = self._levers()
         self.joints = joints_of(stream.columns, skeleton)
+        self.turnings: list[Turning] = []
+        if goal.in_space and max_error == inf:
+            scale = goal.mean * _SCALE_OF_MEAN
+            self.turnings = turnings_of(self.measure, stream.columns, self.values, scale)
+        self.curves = _core.near_turned_measure(self.measure.core, self.turnings)
+        self.exponents = self._levers()
 
     def encode(self) -> Encoded:
         """Give header and chunks; every bound was checked on what they decode to."""
@@ -78,7 +84,8 @@ class Encoder:
         """Give what each channel's step is coarser than the scale, (C,) in 64ths of an octave."""
         frames = self.values[:: max(1, len(self.values) // _SAMPLE)]
         moderate = np.where(np.abs(frames) < 1e9, frames, 0.0)
-        squares = _core.near_levers(self.measure.core, moderate, self.weights)
+        turned = _core.near_turned(self.measure.core, moderate, self.turnings)
+        squares = _core.near_levers(self.curves, turned, self.weights)
         with np.errstate(divide="ignore"):
             levers = 0.5 * np.log2(squares)
         # A channel that moves nothing has the step of one that moves a little.
@@ -116,11 +123,22 @@ class Encoder:
         knot, one = self._knot(scale)
         steps = self._steps(scale)
         early = scale / self.goal.size < _COARSE
-        return pack_header(self.goal.in_space, early, errors, knot, one, steps, self.joints)
+        return pack_header(
+            self.goal.in_space,
+            early,
+            errors,
+            knot,
+            one,
+            steps,
+            self.joints,
+            self.turnings,
+            self.measure.uses_radians,
+        )
 
     def _payload(self, first: int, scale: float, most: float) -> tuple[bytes, NDArray[np.float64]]:
         payload, _, errors = _core.near_encode(
             self.measure.core,
+            self.curves,
             self.values[first : first + self.chunk],
             self._header(scale, (0.0, 0.0)),
             scale,

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mocapress import _core
+from mocapress.codecs.near.turning import Turning
 from mocapress.motion import Column, Skeleton
 from mocapress.records import Reader, Writer
 
@@ -51,6 +52,8 @@ def pack_header(
     first: int,
     steps: Sequence[int],
     joints: Joints,
+    turnings: Sequence[Turning] = (),
+    radians: bool = False,
 ) -> bytes:
     """Make the header.
 
@@ -68,17 +71,21 @@ def pack_header(
         Of each channel, as an exponent of 2^(1/64); they differ by multiples of 32.
     joints
         Of the channels.
+    turnings
+        The joints whose curves turn in another order than the file.
+    radians
+        Whether their angles are in radians.
 
     """
     writer = Writer()
     writer.numbers([_rounded_up(error) for error in errors])
-    writer.integer((1 if in_space else 0) + (0 if early else 2))
+    writer.integer((1 if in_space else 0) + (0 if early else 2) + (4 if radians else 0))
     writer.integer(knot - 1)
     writer.integer(first - 1)
     base = steps[0] if steps else 0
     writer.signed(base)
     apart = np.diff(np.array(steps, np.int64), prepend=base) // COARSE
-    writer.bytes(_core.near_columns(apart.tolist(), joints.of_column, joints.parents))
+    writer.bytes(_core.near_columns(apart.tolist(), joints.of_column, joints.parents, turnings))
     return bytes(writer.data)
 
 
@@ -93,7 +100,7 @@ def unpack_errors(header: bytes) -> tuple[bool, float, float]:
     """
     reader = Reader(header, "header of near")
     mean, largest = reader.numbers(2)
-    return reader.integer(3) % 2 == 1, mean, largest
+    return reader.integer(7) % 2 == 1, mean, largest
 
 
 def _rounded_up(error: float) -> float:

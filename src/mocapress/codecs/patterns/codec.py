@@ -27,6 +27,7 @@ from mocapress.codecs.patterns.hierarchy import AUTOMATIC, markers_of
 from mocapress.codecs.patterns.segmentation import DISTANCE, PCA, RATIO
 from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.motion import Clip, Column, Skeleton, Stream
+from mocapress.motion.lengths import bones
 from mocapress.motion.markers import POINTS, joints_as_points
 from mocapress.motion.units import centimetres_per_unit
 
@@ -63,6 +64,9 @@ class Patterns(Codec):
     """Of clusters: ``max`` (Eq. 2) or ``mean`` (Eq. 1)."""
     clusters: int = 10
     """Of a body part, at first."""
+    steps: int = 1
+    """Of clustering many clips: all segments at once, or (2) those of each clip and then the
+    clusters, which is quicker."""
     mode: str = "extended"
     """``published``: as printed; ``extended``: segments' means apart, and axes of body parts."""
     hierarchy: str = AUTOMATIC
@@ -103,6 +107,7 @@ class Patterns(Codec):
                 self._refuse(name, f"{low:g} to {high:g}")
         for name, least, most in (
             ("clusters", 1, 4096),
+            ("steps", 1, 2),
             ("smooth", 0, 8),
             ("chunk", 1, _MOST_FRAMES),
         ):
@@ -216,8 +221,26 @@ class Patterns(Codec):
         return found
 
     def measure(self, clip: Clip, encoded: Encoded, raw_bytes: int) -> dict[str, float]:
-        """Give the ARMS that the encoder found, and the size of the pattern database."""
-        return unpack_facts(encoded.header)
+        """Give the ARMS that the encoder found, where the bytes are, and how far bones move.
+
+        Bytes are those of the pattern database, of root and protected markers, of segments'
+        lengths, patterns (``index``) and places, and of corrections; they are not told of a file
+        with a model. ``bone_spread`` is the mean of the standard
+        deviations of lengths that should be constant (``mp.bones``), in the unit of the markers.
+        """
+        facts, learned = unpack_facts(encoded.header)
+        if not learned:
+            bits = np.zeros(5)
+            for chunk in encoded.chunks:
+                bits += _core.patterns_bits(
+                    chunk.payload, chunk.frames, clip.channels, encoded.header, b""
+                )
+            names = ("root", "length", "index", "place", "correction")
+            facts |= {f"{name}_bytes": float(b) / 8 for name, b in zip(names, bits, strict=True)}
+        tied = bones(clip) if POINTS in clip.streams and clip.frames else ()
+        if tied:
+            facts["bone_spread"] = float(np.mean([bone.spread for bone in tied]))
+        return facts
 
     def train(self, streams: Iterable[Stream]) -> Model:
         """Learn a database of patterns from streams without skeletons."""
@@ -226,12 +249,12 @@ class Patterns(Codec):
     def learn(self, clips: Iterable[Clip]) -> Model:
         """Learn a database from clips with the markers of the first; others are left out."""
         job: Job | None = None
-        seen = []
+        seen: list[list[NDArray[np.float64]]] = []
         for clip in map(self.prepared, clips):
             own = Job.of(self, clip.main, clip.skeleton, alone=True)
             job = job or own
             if own.tag == job.tag:
-                seen += own.chunks
+                seen.append(own.chunks)
         if job is None:
             raise ParameterError("nothing to learn from", expected="at least one clip")
         return Model(self.id, job.model(seen))

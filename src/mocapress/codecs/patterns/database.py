@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.codecs.patterns.body import Body, Group
-from mocapress.codecs.patterns.clustering import nearest, patterns_of
+from mocapress.codecs.patterns.clustering import nearest, patterns_in_steps, patterns_of
 from mocapress.codecs.patterns.hierarchy import NONE
 from mocapress.codecs.patterns.segmentation import RATIO, lengths_of, normalised
 from mocapress.records import Writer
@@ -34,6 +35,8 @@ class Rules:
     rule: str
     metric: str
     clusters: int
+    steps: int
+    """2: segments are clustered within each clip, and then across clips."""
     apart: bool
     published: bool
 
@@ -102,9 +105,9 @@ class _Learned:
     patterns: int
 
 
-def database_of(body: Body, chunks: Sequence[Array], rules: Rules) -> bytes:
-    """Learn patterns from chunks of rows that are finite: the body of the format, with them."""
-    learned = [_learn(group, chunks, rules) for group in body.groups]
+def database_of(body: Body, clips: Sequence[Sequence[Array]], rules: Rules) -> bytes:
+    """Learn patterns from clips, each as chunks of rows that are finite: the format's body."""
+    learned = [_learn(group, clips, rules) for group in body.groups]
     writer = Writer()
     writer.data += body.pack()
     writer.integer(rules.apart | rules.published << 1)
@@ -129,8 +132,8 @@ def database_of(body: Body, chunks: Sequence[Array], rules: Rules) -> bytes:
     return bytes(writer.data)
 
 
-def _learn(group: Group, chunks: Sequence[Array], rules: Rules) -> _Learned:
-    moved = [relative(group, rows) for rows in chunks]
+def _learn(group: Group, clips: Sequence[Sequence[Array]], rules: Rules) -> _Learned:
+    moved = [relative(group, rows) for chunks in clips for rows in chunks]
     everything = np.concatenate([np.empty((0, len(group.columns))), *moved])
     basis, centre = _basis(group, everything, rules)
     node = node_of(
@@ -155,9 +158,13 @@ def _learn(group: Group, chunks: Sequence[Array], rules: Rules) -> _Learned:
         shapes = shapes - shapes.mean(axis=1, keepdims=True)
     scale = node.distances / np.sqrt(frames)
     points = _points(shapes * scale)
-    centres = patterns_of(
-        points, rules.cluster * group.scale, metric=rules.metric, clusters=rules.clusters
-    )
+    threshold = rules.cluster * group.scale
+    if rules.steps > 1:
+        counts = np.cumsum([0, *map(len, lengths)])[np.cumsum([0, *map(len, clips)])]
+        parts = [points[a:b] for a, b in pairwise(counts.tolist())]
+        centres = patterns_in_steps(parts, threshold, metric=rules.metric, clusters=rules.clusters)
+    else:
+        centres = patterns_of(points, threshold, metric=rules.metric, clusters=rules.clusters)
     safe = np.where(scale > 0, scale, 1.0)
     patterns = centres.reshape(len(centres), frames, len(basis)) / safe
     step = rules.pattern_step / (importance_of(group) / 16)

@@ -100,16 +100,17 @@ class Job:
             rule=codec.rule,
             metric=codec.metric,
             clusters=codec.clusters,
+            steps=codec.steps,
             apart=codec.mode != "published",
             published=codec.mode == "published",
         )
 
-    def model(self, chunks: Sequence[Array]) -> bytes:
-        """Learn a model's payload from rows of this stream and others like it."""
+    def model(self, clips: Sequence[Sequence[Array]]) -> bytes:
+        """Learn a model's payload from chunks of this stream and of others like it."""
         scale = self.target / (_USUAL_ARMS * self.size) if self.target else 1.0
         writer = Writer()
         writer.bytes(self.tag)
-        return bytes(writer.data) + database_of(self.body, chunks, self.rules(scale))
+        return bytes(writer.data) + database_of(self.body, clips, self.rules(scale))
 
     def fits(self, model: Model) -> bool:
         """Say whether a model was learned from such markers; the body is then the model's.
@@ -134,11 +135,12 @@ class Job:
         """Code the stream; with thresholds for the target ARMS, where there is one."""
         target = self.target
         scale = target / (_USUAL_ARMS * self.size) if target else 1.0
-        made, arms = self._coded(scale, model)
+        own = self._database(scale, model)
+        made, arms = self._coded(scale, model, own)
         if self.codec.smooth:
             # Of fast motion in short segments, the filter takes more than it mends.
             self.smooth = self.codec.smooth
-            smoothed = self._coded(scale, model)
+            smoothed = self._coded(scale, model, own)
             if smoothed[1] < arms:
                 made, arms = smoothed
             else:
@@ -162,12 +164,12 @@ class Job:
             if not low < guess < high:
                 guess = (low + high) / 2 if high < inf else 2 * low
             scale = guess
-            made, arms = self._coded(scale, model)
+            made, arms = self._coded(scale, model, self._database(scale, model))
         if best is None and arms <= target:
             best = made
         while best is None:
             scale = min(scale, high) / 2
-            made, arms = self._coded(scale, model)
+            made, arms = self._coded(scale, model, self._database(scale, model))
             if arms <= target or scale < _LEAST_SCALE:
                 best = made
         return best
@@ -177,10 +179,13 @@ class Job:
         """How many there are."""
         return int(self.values.shape[1])
 
-    def _coded(self, scale: float, model: bytes) -> tuple[Encoded, float]:
-        """Code with scaled thresholds; and give ARMS."""
+    def _database(self, scale: float, model: bytes) -> bytes:
+        """Learn the stream's own patterns, where no model has them."""
+        return b"" if model else database_of(self.body, [self.chunks], self.rules(scale))
+
+    def _coded(self, scale: float, model: bytes, own: bytes) -> tuple[Encoded, float]:
+        """Code with scaled thresholds and the stream's own patterns; and give ARMS."""
         rules = self.rules(scale)
-        own = b"" if model else database_of(self.body, self.chunks, rules)
         header = self._header(rules, bool(model), 0.0) + own
         nodes = self._nodes(header, model, rules)
         projections = np.concatenate([np.empty(0), *(n.projection.ravel() for n, _ in nodes)])
@@ -255,8 +260,8 @@ class Job:
         return bytes(writer.data)
 
 
-def unpack_facts(header: bytes) -> dict[str, float]:
-    """Give what a header says of a stream: ARMS, and the bytes of the pattern database in it."""
+def unpack_facts(header: bytes) -> tuple[dict[str, float], bool]:
+    """Give ARMS and the bytes of the pattern database, and whether a model has that."""
     reader = Reader(header, "patterns header")
-    reader.integer(1)
-    return {"arms": reader.double(), "database_bytes": float(reader.left)}
+    learned = bool(reader.integer(1))
+    return {"arms": reader.double(), "database_bytes": float(reader.left)}, learned

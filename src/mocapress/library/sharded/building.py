@@ -1,27 +1,27 @@
-"""The tasks of a sharded library: each makes or reads a shard, and can run on any machine."""
+"""The tasks that make shards of files; each can run on any machine."""
 
+import hashlib
 import tempfile
 import warnings
-from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Any, NamedTuple
 
 from mocapress import codecs
-from mocapress.codecs import Codec, Model, Scope
-from mocapress.container import Companion
+from mocapress.codecs import Codec, Model
+from mocapress.container import Companion, open_mcz
 from mocapress.errors import CorruptError, MocapressError, MotionWarning
-from mocapress.library.adding import Beside, Extra
-from mocapress.library.checking import Fault, check, verify_clip
+from mocapress.library.adding import Adder, Beside, Extra
 from mocapress.library.database import WAIT, Database
 from mocapress.library.library import Library, open_library
 from mocapress.library.sharded.manifest import CLIP, shard_file
-from mocapress.library.sharded.sealing import digest_of, rows_of, seal
+from mocapress.library.sharded.sealing import rows_of, seal
 from mocapress.library.sharded.store import Listed, Store
+from mocapress.models import Place
+from mocapress.source import LIMIT, MCZ, Source, choose_beside
 from mocapress.source import Beside as Used
-from mocapress.source import Source, choose_beside
 
 
 @dataclass
@@ -35,10 +35,25 @@ class Made:
     failed: list[tuple[str, str]] = field(default_factory=list)
     """Files that could not be added, and why."""
     warnings: list[tuple[str, str]] = field(default_factory=list)
+    touched: dict[str, int] = field(default_factory=dict)
+    """By name in the library, when files that are there were last changed, in another moment than
+    the manifest says but to the same contents."""
     raw: int = 0
-    """Bytes of the files."""
+    """Bytes of the files that were added."""
     sizes: tuple[int, int] = (0, 0)
     """Bytes of chunks before and afterwards, of clips that were coded anew."""
+    indexed: tuple[int, int] = (0, 0)
+    """Clips that can be searched now, and those that have no body to be searched."""
+
+
+class Known(NamedTuple):
+    """What the library has of a file, clip or companion."""
+
+    size: int | None
+    modified: int | None
+    sha256: bytes | None
+    companions: tuple[str, ...] = ()
+    """Names of those that a clip was added with."""
 
 
 @dataclass(frozen=True)
@@ -47,9 +62,6 @@ class Adding:
 
     store: Store
     source: Store
-    files: Sequence[Listed]
-    skeletons: Sequence[Listed]
-    """Files of skeletons that may lie beside them."""
     into: str
     codec: Codec
     model: Model | None
@@ -57,6 +69,29 @@ class Adding:
     shard_bytes: int
     indexed: bool = True
     """Whether they can be searched for at once."""
+    compressed: bool = False
+    """Whether the files are ``.mcz``, which are taken as they are coded."""
+    models: Sequence[Place] = ()
+    """Where the models are that these need, beside the files."""
+    limit: int | None = LIMIT
+    """Bytes that may be decoded of a file."""
+    files: Sequence[Listed] = ()
+    skeletons: Sequence[Listed] = ()
+    """Files of skeletons that may lie beside them."""
+    known: Mapping[str, Known] = field(default_factory=dict)
+    """By name in the library, what it has of these files and of the skeletons of its clips."""
+    unpacked: bool = False
+    """Whether ``source`` was made for this task alone."""
+
+    def name_of(self, file: Listed) -> str:
+        """Give the name in the library of a file."""
+        name = file.name.removesuffix(".mcz") if self.compressed else file.name
+        return f"{self.into}/{name}" if self.into else name
+
+    def discard(self) -> None:
+        """Delete what was made for this task alone."""
+        if self.unpacked:
+            self.source.remove_all()
 
     @property
     def size(self) -> int:
@@ -70,23 +105,33 @@ def add(task: Adding) -> Made:
     waiting = list(task.files)
     while waiting:
         with building() as library:
-            adder = library.adder(task.codec, task.model, overwrite=True, indexed=task.indexed)
+            adder = library.adder(
+                task.codec, task.model, overwrite=True, models=task.models, indexed=task.indexed
+            )
             full, before = False, made.raw
             while waiting and not full:
                 file = waiting.pop(0)
                 with _told(file.name, made):
-                    _add(task, file, library, adder.file)
-                    made.raw += file.size
+                    if _add(task, file, library, adder):
+                        made.raw += file.size
+                    else:
+                        made.touched[task.name_of(file)] = file.modified
                     # What is in the log does not count for the size of the file.
                     library.db.connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
                 full = library.path.stat().st_size >= task.shard_bytes
             if made.raw > before:
-                publish(task.store, library, made, lambda _: codecs.spec(task.codec))
+                publish(task.store, library, made, lambda name: _coding(task, library, name))
     return made
 
 
-def _add(task: Adding, file: Listed, library: Library, add_file: Callable[..., Any]) -> None:
-    name = f"{task.into}/{file.name}" if task.into else file.name
+def _coding(task: Adding, library: Library, name: str) -> str:
+    """Say how a clip was asked to be coded; of one that came coded, nobody knows at what level."""
+    return f"imported:{library[name].codec}" if task.compressed else codecs.spec(task.codec)
+
+
+def _add(task: Adding, file: Listed, library: Library, adder: Adder) -> bool:
+    """Add a file; give False where it is there already."""
+    name = task.name_of(file)
     used: list[Listed] = []
     near = {PurePosixPath(other.name): other for other in task.skeletons}
 
@@ -98,10 +143,14 @@ def _add(task: Adding, file: Listed, library: Library, add_file: Callable[..., A
         used.append(near[found[0]])
         return Used(str(found[0]), found[1], lambda: task.source.read(str(found[0])))
 
-    source = Source(task.source.read(file.name), file.name, look)
+    source = Source(task.source.read(file.name), file.name, look, limit=task.limit)
+    if task.compressed and source.kind != MCZ:
+        raise CorruptError("not compressed by mocapress", file=file.name)
+    if _is_there(task, file, source):
+        return False
     if source.format is not None and source.format.read_skeleton is not None:
         library.add_companion(source, name, file.modified)
-        return
+        return True
 
     def companions() -> Sequence[Beside]:
         of = source.format
@@ -112,7 +161,31 @@ def _add(task: Adding, file: Listed, library: Library, add_file: Callable[..., A
         companion = Companion(of.companion, PurePosixPath(own.name).name, source.used.read())
         return [Beside(kept, companion, own.modified)]
 
-    add_file(source, name, Extra(file.modified, task.labels, beside=companions))
+    adder.file(source, name, Extra(file.modified, task.labels, beside=companions))
+    return True
+
+
+def _is_there(task: Adding, file: Listed, source: Source) -> bool:
+    """Say whether the library has a file, which was only touched, and its skeletons."""
+    known = task.known.get(task.name_of(file))
+    if known is None or known.sha256 is None or known.sha256 != _digest(source):
+        return False
+    there = {task.name_of(skeleton): skeleton for skeleton in task.skeletons}
+    for name in known.companions:
+        now, before = there.get(name), task.known.get(name)
+        if now is None or before is None or before[:2] == (now.size, now.modified):
+            continue
+        if before.sha256 != hashlib.sha256(task.source.read(now.name)).digest():
+            return False
+    return True
+
+
+def _digest(source: Source) -> bytes | None:
+    """Give the SHA-256 of a file, of a ``.mcz`` that of its original."""
+    if source.kind != MCZ:
+        return source.digest
+    original = open_mcz(source).original
+    return original.digest if original else None
 
 
 @contextmanager
@@ -153,108 +226,3 @@ def publish(
     store.put(shard_file(name), target)
     made.shards[name] = size
     made.rows += rows
-
-
-@dataclass(frozen=True)
-class Reading:
-    """A shard to read, and the clips that count of it."""
-
-    store: Store
-    shard: str
-    size: int
-    """Bytes of the shard."""
-    clips: dict[int, str]
-    """Ids in the shard, and names."""
-    codings: dict[str, str]
-    """How each clip is coded, as the manifest has it."""
-
-
-@contextmanager
-def _fetched(task: Reading, mode: str) -> Iterator[Library]:
-    """Give a shard as a library on this machine.
-
-    Raises
-    ------
-    CorruptError
-        When it is missing or damaged.
-
-    """
-    file = shard_file(task.shard)
-    with tempfile.TemporaryDirectory(prefix="mocapress-", ignore_cleanup_errors=True) as folder:
-        path = Path(folder, "shard.mocapdb")
-        try:
-            task.store.fetch(file, path)
-        except FileNotFoundError as error:
-            raise CorruptError(
-                f"the shard is missing, and its {len(task.clips)} clips with it",
-                file=task.store.file(file),
-                expected=f"a file of {task.size} bytes",
-            ) from error
-        found = digest_of(path)
-        if found != task.shard:
-            raise CorruptError(
-                "the shard is damaged", file=task.store.file(file), expected=task.shard, found=found
-            )
-        with open_library(path, mode) as library:
-            yield library
-
-
-def verify(task: Reading, *, decode: bool = True) -> list[Fault]:
-    """Check a shard's digest, and decode its clips; give what is damaged."""
-    with _fetched(task, "r") as library:
-        if not decode:
-            return [fault for faults in check(library.db) for fault in faults]
-        return [
-            fault
-            for number, name in task.clips.items()
-            for fault in verify_clip(library.db, number, name)
-        ]
-
-
-@dataclass(frozen=True)
-class Recoding:
-    """A shard to make anew: without clips that do not count, and with some coded anew."""
-
-    of: Reading
-    codec: Codec | None = None
-    chosen: frozenset[str] = frozenset()
-    """Clips to code anew."""
-
-
-def remake(task: Recoding) -> Made:
-    """Make a shard anew, and write it under its own new name."""
-    made = Made()
-    with _fetched(task.of, "a") as library:
-        counted = set(task.of.clips)
-        gone = [clip.id for clip in library.clips() if clip.id not in counted]
-        if gone:
-            library.remove(*gone)
-        recoded = dict[str, str]()
-        if task.codec is not None:
-            recoded = _recode(library, task.codec, sorted(task.chosen), made)
-        publish(
-            task.of.store,
-            library,
-            made,
-            lambda name: recoded.get(name, task.of.codings.get(name)),
-        )
-    return made
-
-
-def _recode(library: Library, codec: Codec, names: Sequence[str], made: Made) -> dict[str, str]:
-    spec = codecs.spec(codec)
-    sizes: Counter[str] = Counter()
-    if codec.can.scope is Scope.LIBRARY:
-        done = library.recompress_together(names, codec)
-    else:
-        done = {}
-        for name in names:
-            try:
-                done[name] = library.recompress(name, codec)
-            except MocapressError as error:
-                made.failed.append((name, str(error)))
-    for before, after in done.values():
-        sizes["before"] += before
-        sizes["after"] += after
-    made.sizes = sizes["before"], sizes["after"]
-    return dict.fromkeys(done, spec)

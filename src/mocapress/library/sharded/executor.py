@@ -119,7 +119,7 @@ def _client(cluster: str) -> Iterator[Any]:
         dask: Any = import_module("distributed")
     except ImportError:
         raise UnsupportedError(
-            "--cluster needs Dask", expected="pip install 'mocapress[cluster]'"
+            "a cluster needs Dask", expected="pip install 'mocapress[cluster]'"
         ) from None
     if not cluster.startswith(LOCAL):
         if "://" not in cluster:
@@ -142,7 +142,7 @@ def _client(cluster: str) -> Iterator[Any]:
         raise ParameterError("no cluster", expected="local:N, e.g. local:2", found=cluster)
     with (
         dask.LocalCluster(
-            n_workers=int(number), threads_per_worker=1, dashboard_address=None, silence_logs=50
+            n_workers=int(number), threads_per_worker=1, dashboard_address=":0", silence_logs=50
         ) as workers,
         dask.Client(workers, set_as_default=False) as client,
     ):

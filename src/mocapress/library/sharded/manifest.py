@@ -21,7 +21,8 @@ CLIP, COMPANION, MODEL = "clip", "companion", "model"
 FOLDER, ENDING = "manifest", ".parquet"
 SHARD_BYTES = 256 * 2**20
 """Bytes of a shard, unless a library is made with other ones."""
-_VERSION = 1
+_VERSION = 2
+"""Of the columns and the metadata; 1 had no ``indexed``."""
 _KEPT = 3
 """Versions that stay for readers that have found them just now."""
 _TRIES = 20
@@ -39,6 +40,8 @@ class Manifest:
     """By name: a serial number that no other shard ever has, and bytes."""
     serial: int = 1
     """Of the next shard."""
+    indexed: bool = True
+    """Whether clips are indexed for search when they are added, unless said otherwise then."""
 
     @property
     def data(self) -> bytes:
@@ -50,6 +53,7 @@ class Manifest:
             "shard_bytes": self.shard_bytes,
             "shards": {name: list(facts) for name, facts in self.shards.items()},
             "serial": self.serial,
+            "indexed": self.indexed,
         }
         table = self.rows.replace_schema_metadata({"mocapress": json.dumps(facts)})
         sink = BufferOutputStream()
@@ -120,11 +124,6 @@ def schema() -> "pa.Schema":
     )
 
 
-def empty(shard_bytes: int = SHARD_BYTES) -> Manifest:
-    """Give the manifest of a library without clips."""
-    return Manifest(schema().empty_table(), shard_bytes=shard_bytes)
-
-
 def table_of(rows: list[dict[str, Any]]) -> "pa.Table":
     """Make a table of rows."""
     import pyarrow as pa
@@ -171,17 +170,20 @@ def load(store: Store) -> Manifest:
         rows = parquet.read_table(io.BytesIO(data), page_checksum_verification=True)
         facts = json.loads((rows.schema.metadata or {})[b"mocapress"])
         version = facts["version"]
-        if version == _VERSION:
+        if version in range(1, _VERSION + 1):
             rows = rows.select(wanted.names).cast(wanted)
             shards = {name: (int(s), int(b)) for name, (s, b) in facts["shards"].items()}
-            made = Manifest(rows, number, int(facts["shard_bytes"]), shards, int(facts["serial"]))
+            indexed = facts["indexed"] is not False if version > 1 else True
+            made = Manifest(
+                rows, number, int(facts["shard_bytes"]), shards, int(facts["serial"]), indexed
+            )
     except (pa.ArrowException, OSError, KeyError, ValueError, TypeError, AttributeError) as error:
         raise CorruptError(
             f"the manifest is damaged ({str(error).splitlines()[0]})", file=file
         ) from error
-    if version != _VERSION:
+    if version not in range(1, _VERSION + 1):
         raise UnsupportedError(
-            "version of the manifest", file=file, expected=str(_VERSION), found=str(version)
+            "version of the manifest", file=file, expected=f"1 to {_VERSION}", found=str(version)
         )
     return made
 
@@ -221,8 +223,8 @@ def _tidy(store: Store, before: Manifest, after: Manifest, number: int) -> None:
             store.remove(file)
 
 
-def create(store: Store, shard_bytes: int = SHARD_BYTES) -> None:
-    """Make a library without clips.
+def create(store: Store, shard_bytes: int = SHARD_BYTES, *, indexed: bool = True) -> None:
+    """Make a library without clips; see ``Manifest``.
 
     Raises
     ------
@@ -230,7 +232,7 @@ def create(store: Store, shard_bytes: int = SHARD_BYTES) -> None:
         When there is one.
 
     """
-    made = empty(shard_bytes)
+    made = Manifest(schema().empty_table(), shard_bytes=shard_bytes, indexed=indexed)
     if newest(store):
         raise ExistsError("there is a library already", file=store.url)
     store.create(_name(1), made.data)

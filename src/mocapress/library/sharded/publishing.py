@@ -3,14 +3,24 @@
 from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from mocapress.library.sharded.building import Made, Reading, Recoding, remake
+from mocapress.library.sharded import manifest
+from mocapress.library.sharded.building import Made
 from mocapress.library.sharded.manifest import CLIP, COMPANION, MODEL, Manifest, table_of
+from mocapress.library.sharded.remaking import Reading, Recoding, remake
 from mocapress.library.sharded.store import Store
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
 Change = Callable[[Manifest], Manifest | None]
+
+
+def publish_added(store: Store, made: Made, labels: Iterable[str] = ()) -> Manifest:
+    """Publish what a task has made, and when files were touched, which get the labels, too."""
+    found = manifest.publish(store, with_added(store, made)) if made.rows else None
+    if made.touched:
+        found = manifest.publish(store, with_touched(made.touched, labels))
+    return found or manifest.load(store)
 
 
 def with_added(store: Store, made: Made) -> Change:
@@ -53,6 +63,23 @@ def _without_equal(rows: Iterable[dict[str, Any]], before: Manifest) -> list[dic
             chosen[key] = row
     kept = {id(row) for row in old}
     return [row for row in chosen.values() if id(row) not in kept]
+
+
+def with_touched(touched: Mapping[str, int], labels: Iterable[str]) -> Change:
+    """Say when files were last changed, clips and companions, whose contents are what they were."""
+    more = {*labels}
+
+    def change(before: Manifest) -> Manifest | None:
+        clips = _found(before, CLIP, touched)
+        old = [*clips, *_found(before, COMPANION, touched)]
+        rows = [row | {"modified": touched[row["name"]]} for row in old]
+        for row in rows[: len(clips)]:
+            row["labels"] = sorted({*(row["labels"] or ()), *more})
+        if rows == old:
+            return None
+        return _joined(before, _rest(before.rows, old), [Made({}, rows)])
+
+    return change
 
 
 def with_removed(store: Store, clips: Collection[str]) -> Change:

@@ -2,14 +2,15 @@
 
 import errno
 import os
+import shutil
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime
 from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 from mocapress.errors import UnsupportedError
 from mocapress.storage import ExistsError, write_whole
@@ -77,6 +78,12 @@ class Store:
             parts.append(bytes(whole[span][begin - span[0] : end - span[0]]))
         return parts
 
+    @contextmanager
+    def open(self, name: str) -> Iterator[BinaryIO]:
+        """Open a file to read it from its beginning on."""
+        with self._naming(name), self._opened[0].open(self._path(name), "rb") as stream:
+            yield stream
+
     def fetch(self, name: str, path: Path) -> None:
         """Copy a file here."""
         with self._naming(name):
@@ -96,6 +103,19 @@ class Store:
             there = self._opened[0].info(self._path(name))["size"]
             if there != size:
                 raise OSError(errno.EIO, f"{there} of {size} bytes arrived", self.file(name))
+
+    def put_folder(self, folder: Path) -> None:
+        """Copy the files of a folder of this machine there."""
+        with self._naming(""):
+            if self.local is not None:
+                shutil.copytree(folder, self.local, dirs_exist_ok=True)
+            else:
+                self._opened[0].put(f"{folder}/", f"{self._path('')}/", recursive=True)
+
+    def remove_all(self) -> None:
+        """Delete the folder with all files, if it is there."""
+        with self._naming(""), suppress(FileNotFoundError):
+            self._opened[0].rm(self._path(""), recursive=True)
 
     def create(self, name: str, data: bytes) -> None:
         """Write a file that is not there yet, whole or not at all.
