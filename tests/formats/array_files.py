@@ -47,4 +47,4 @@ def by_columns() -> bytes:
 
 def stored_decimals() -> bytes:
     """Give an array of decimals that were stored as float32."""
-    return npy(np.round(100 * wave(columns=3), 3).astype(np.float32))
+    return npy(wave(columns=3).astype(np.float32))
