@@ -30,12 +30,16 @@ class Difference:
         (C,) mean error of each channel.
     psnr
         -10 log10 of the mean squared error of all values, dB; infinite without error.
+    errors
+        (F, C) error of each channel in each frame.
     joints
         Names of the joints; empty without skeletons.
     largest_distance
         (J,) largest distance of each joint, length units of the file; None without skeletons.
     mean_distance
         (J,) mean distance of each joint.
+    distances
+        (F, J) distance of each joint in each frame.
     bones
         Of markers: pairs whose distance stays in the first clip (``mp.bones``).
     largest_drift
@@ -49,9 +53,11 @@ class Difference:
     largest: Array
     mean: Array
     psnr: float
+    errors: Array
     joints: tuple[str, ...] = ()
     largest_distance: Array | None = None
     mean_distance: Array | None = None
+    distances: Array | None = None
     bones: tuple[str, ...] = ()
     largest_drift: Array | None = None
     mean_drift: Array | None = None
@@ -106,9 +112,11 @@ def compare(first: Clip, second: Clip) -> Difference:
         errors.max(axis=0, initial=0),
         _mean(errors),
         psnr,
+        errors,
         joints,
         None if distances is None else distances.max(axis=0, initial=0),
         None if distances is None else _mean(distances),
+        distances,
         tied,
         None if drift is None else drift.max(axis=0, initial=0),
         None if drift is None else _mean(drift),
