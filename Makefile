@@ -4,14 +4,15 @@ CXX ?= g++
 VENV := .venv
 BIN := $(VENV)/bin
 CORPUS_SOURCE := ../shared/data
-SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -Icore
+SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -Icore -Iinclude \
+    -DFUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
 FUZZ_RUNS ?= 5000
 JOBS := $(shell getconf _NPROCESSORS_ONLN)
 sources := $(wildcard core/*/*.cpp core/*/*.hpp)
 headers := $(filter %.hpp,$(sources)) $(wildcard core/exact/data/*)
-kernels := $(filter-out core/python/% core/wasm/% core/check/% core/fuzz/%,$(filter %.cpp,$(sources)))
+kernels := $(filter-out core/python/% core/wasm/% core/check/% core/fuzz/% core/player/%,$(filter %.cpp,$(sources)))
 
-.PHONY: demo demo-runs test long check stub tests test-js browser node compilers wasm sanitize fuzz bench wheel clean
+.PHONY: demo demo-runs test long check stub tests test-js browser node player npm compilers wasm sanitize fuzz bench wheel clean
 
 demo: $(VENV)/.installed
 	@PYTHONPATH=benchmarks $(BIN)/python -m mocapress_bench demo
@@ -38,7 +39,7 @@ check: $(VENV)/.built
 	$(BIN)/ruff check .
 	@$(BIN)/clang-format --dry-run --Werror $(sources)
 	@echo $(filter-out core/python/% core/wasm/%,$(filter %.cpp,$(sources))) | xargs -n 4 -P 2 sh -c \
-	    '$(BIN)/clang-tidy --quiet "$$@" -- -std=c++20 -Icore 2>/dev/null' clang-tidy
+	    '$(BIN)/clang-tidy --quiet "$$@" -- -std=c++20 -Icore -Iinclude 2>/dev/null' clang-tidy
 	@$(STUB) build/_core.pyi && cmp build/_core.pyi src/mocapress/_core.pyi || { \
 	    echo "the bindings have changed: make stub writes src/mocapress/_core.pyi"; exit 1; }
 	$(BIN)/mypy
@@ -48,7 +49,7 @@ STUB := $(BIN)/python -m nanobind.stubgen -q -m mocapress._core -o
 stub: $(VENV)/.built
 	$(STUB) src/mocapress/_core.pyi
 
-tests: $(VENV)/.built $(if $(CI),$(VENV)/.zig) corpus browser node compilers
+tests: $(VENV)/.built $(if $(CI),$(VENV)/.zig) corpus browser node player npm compilers
 	MOCAPRESS_CORPUS=$(if $(wildcard corpus/.version),$(CURDIR)/corpus,$(MOCAPRESS_CORPUS)) \
 	    $(BIN)/pytest -n auto --dist worksteal --durations 20
 
@@ -70,7 +71,17 @@ build/fuzz/%.fuzzed: build/fuzz/%
 	$< $(wildcard core/fuzz/seeds/$*/*) -runs=$(FUZZ_RUNS) $(FUZZ_SEED:%=-seed=%)
 
 $(fuzzers): build/fuzz/%: build/fuzz/core/fuzz/%.o build/fuzz/core/fuzz/driver.o $(kernels:%.cpp=build/fuzz/%.o)
-	@$(CXX) $(SANITIZE) $^ -o $@
+	@$(CXX) $(SANITIZE) $(filter %.o,$^) $(LIBRARIES) -o $@
+
+# That of libmocapress has the reader of files beside the kernels.
+build/fuzz/player: LIBRARIES := -llzma -lz
+build/fuzz/player: $(patsubst %.cpp,build/fuzz/%.o,$(wildcard core/player/*.cpp)) build/fuzz/dictionary.o
+
+build/fuzz/dictionary.o: src/mocapress/container/dictionary1.bin core/player/dictionary.cpp.in
+	@mkdir -p $(@D)
+	@sed "s/@DICTIONARY@/$$(od -An -v -tu1 $< | tr -s ' \n' ',' | sed 's/^,//')/" core/player/dictionary.cpp.in \
+	    >build/fuzz/dictionary.cpp
+	@$(CXX) $(SANITIZE) -c build/fuzz/dictionary.cpp -o $@
 
 build/fuzz/%.o: %.cpp $(headers)
 	@mkdir -p $(@D)
@@ -96,6 +107,21 @@ node: browser
 	    npm ci --silent --no-audit --no-fund --prefix build/node; } || { \
 	    rm -f build/node/package-lock.json; echo "no packages of npm: tests of glTF in viewers are skipped"; }
 
+# libmocapress, of the kernels that the Python module was built of, and the program that tests try
+# it with.
+player: $(VENV)/.installed
+	@{ command -v cmake && printf '#include <lzma.h>\n#include <zlib.h>\n' | $(CXX) -E -xc++ -; } >/dev/null 2>&1 || { \
+	    if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	        apt-get -qq update && DEBIAN_FRONTEND=noninteractive apt-get -qq install -y \
+	            --no-install-recommends cmake zlib1g-dev liblzma-dev >/dev/null; \
+	    else false; fi; } || echo "no cmake, zlib or lzma: tests of libmocapress are skipped"
+	@mkdir -p build/player && { cmake -S . -B build/player/library -DCMAKE_CXX_COMPILER=$(CXX) \
+	        -DMOCAPRESS_CORE=$(CURDIR)/$$(ls build/*/libmocapress_core.a | head -1) \
+	        -DCMAKE_INSTALL_PREFIX=$(CURDIR)/build/player/prefix && \
+	    cmake --build build/player/library --target install && \
+	    cmake -S tests/player -B build/player -DCMAKE_PREFIX_PATH=$(CURDIR)/build/player/prefix && \
+	    cmake --build build/player; } >build/player/log 2>&1 || { test -z "$$CI" || cat build/player/log; }
+
 # What builds the core in other ways and runs it there (tests/core/test_determinism.py). What is
 # missing and cannot be installed is skipped by the tests, which say so.
 compilers := clang++ aarch64-linux-gnu-g++ qemu-aarch64 x86_64-w64-mingw32-g++-posix wine
@@ -106,6 +132,14 @@ compilers:
 	            --no-install-recommends clang g++-aarch64-linux-gnu qemu-user \
 	            g++-mingw-w64-x86-64-posix wine wine64 >/dev/null; \
 	    else false; fi; } || echo "not all other compilers are there: $(compilers)"
+
+# The package for npm, of parts of the page: build/npm is what would be published.
+npm_wasm := exact near patterns qssd kinematics
+npm:
+	@rm -rf build/npm && mkdir -p build/npm/mcz build/npm/files/wasm build/npm/files/vendor/xz
+	@cp -r npm/* LICENSE build/npm && cp viewer/mcz/*.js build/npm/mcz
+	@cp $(npm_wasm:%=viewer/wasm/%.wasm) build/npm/files/wasm
+	@cp viewer/vendor/xz/* build/npm/files/vendor/xz && cp src/mocapress/container/dictionary1.bin build/npm/files
 
 # The core for the page, in modules of which it carries those that it needs; viewer/wasm/ keeps what
 # this builds.
@@ -187,7 +221,7 @@ $(VENV)/.built: $(VENV)/.installed benchmarks/pyproject.toml
 	$(BIN)/pip install --quiet --disable-pip-version-check 'mocapress[dev]' --editable ./benchmarks
 	@touch $@
 
-$(VENV)/.installed: pyproject.toml CMakeLists.txt $(kernels) $(headers) $(wildcard core/python/*.cpp)
+$(VENV)/.installed: pyproject.toml CMakeLists.txt cmake/python.cmake $(kernels) $(headers) $(wildcard core/python/*.cpp)
 	@command -v $(PYTHON) >/dev/null || { echo "mocapress needs Python 3.11 to 3.13 (Debian: apt-get install python3-venv)"; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "mocapress needs Python 3.11 or later; PYTHON=... names one"; exit 1; }
 	@command -v $(CXX) >/dev/null || { echo "mocapress needs a C++20 compiler: g++ 12 or clang 15 (Debian: apt-get install g++)"; exit 1; }

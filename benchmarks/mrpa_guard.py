@@ -11,7 +11,6 @@ the first takes (``mocapress_bench/mrpa_planted.py``), where there are parents.
 import sys
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -43,8 +42,8 @@ def groups_of(folder: Path) -> list[list[Clip]]:
     return list(groups.values())
 
 
-def app_bytes(clips: Sequence[Clip], spec: str) -> int:
-    """Give the bytes of all chunks."""
+def bytes_of(clips: Sequence[Clip], spec: str) -> int:
+    """Give the bytes of all chunks of clips that are coded one by one."""
     made = [codec(spec).encode(clip.main, skeleton=clip.skeleton) for clip in clips]
     return sum(len(chunk.payload) for one in made for chunk in one.chunks)
 
@@ -53,7 +52,7 @@ def taken(streams: Sequence[Stream], made: Together, counts: Taken) -> None:
     """Count which alphas and betas the pieces of columns take."""
     values = [np.ascontiguousarray(stream.values, dtype=np.float64) for stream in streams]
     others = {
-        digest: values[origin.clip][origin.first : origin.first + origin.frames]
+        digest: values[origin.stream][origin.first : origin.first + origin.frames]
         for digest, origin in made.origins.items()
     }
     for own, one, stream in zip(values, made.encoded, streams, strict=True):
@@ -104,9 +103,8 @@ def main() -> None:
             streams = [clip.main for clip in clips]
             together = made.encode_together(streams, skeleton=clips[0].skeleton)
             taken(streams, together, raw)
-            alone = replace(made, depth=0).encode_together(streams, skeleton=clips[0].skeleton)
-            sizes = [app_bytes(clips, "app"), app_bytes(clips, "app:mantissa_limit=53")]
-            sizes += size_of(alone), size_of(together)
+            sizes = [bytes_of(clips, spec) for spec in ("app", "app:mantissa_limit=53", "mrpa")]
+            sizes.append(size_of(together))
             needs = sum(len(chunk.needs) for one in together.encoded for chunk in one.chunks)
             against = 100 * (sizes[3] / max(min(sizes[:2]), 1) - 1)
             worst = max(worst, against)

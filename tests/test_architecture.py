@@ -16,7 +16,7 @@ ROWS = [
     {"records", "storage"},
     {"motion"},
     {"formats", "codecs", "figures"},
-    {"source"},
+    {"source", "difference_picture"},
     {"container"},
     {"models"},
     {"api"},

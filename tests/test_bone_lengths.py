@@ -98,6 +98,15 @@ def test_missing_markers_are_left_alone() -> None:
     assert np.isnan(mp.bone_drift(clip, mended)[100:120]).any()
 
 
+def test_a_marker_that_was_hardly_seen_has_no_bones() -> None:
+    places = chain()
+    ghost = np.full((len(places), 1, 3), np.nan)
+    ghost[50:60, 0] = places[50:60, 0] + 30
+    found = mp.bones(clip_of(np.concatenate([places, ghost], axis=1)))
+    assert found
+    assert not any(6 in (bone.near, bone.far) for bone in found)
+
+
 def test_a_clip_without_markers_has_no_bones(samples: Path) -> None:
     with pytest.raises(UnsupportedError):
         mp.bones(mp.read(samples / "freebvh.bvh"))

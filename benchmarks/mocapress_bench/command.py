@@ -9,6 +9,7 @@ from mocapress_bench.mrpa_command import mrpa
 from mocapress_bench.patterns_command import patterns
 from mocapress_bench.qssd_command import qssd
 from mocapress_bench.qssd_model_command import qssd_model
+from mocapress_bench.qssd_rivals_command import qssd_rivals
 from mocapress_bench.search_command import search
 
 app = typer.Typer(
@@ -17,5 +18,5 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (lossless, diffma, mrpa, patterns, qssd, qssd_model, search, demo):
+for command in (lossless, diffma, mrpa, patterns, qssd, qssd_model, qssd_rivals, search, demo):
     app.command()(command)

@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 import mocapress as mp
 from mocapress import codecs
+from mocapress.codecs.qssd.feet import ASSUMED_RATE
 from mocapress.codecs.qssd.quaternions import turned_degrees
-from mocapress.errors import MocapressError, MotionWarning
+from mocapress.errors import MocapressError, MotionWarning, UnsupportedError
 from mocapress.models import model_bytes
+from mocapress.motion.contacts import contacts, slides, upward
 from mocapress.motion.kinematics import local_rotations, positions
 
 Array = NDArray[np.float64]
@@ -42,6 +44,10 @@ class Row:
     distortion: list[float] = field(default_factory=list)
     """Eq. 13 of each clip."""
     degrees: list[float] = field(default_factory=list)
+    slides: list[tuple[Array, Array]] = field(default_factory=list)
+    """How far feet slide from frame to frame of a contact, original and decoded, cm, by clip."""
+    feet: list[Array] = field(default_factory=list)
+    """How far feet are from where they stand, in contacts, cm."""
 
     def figures(self) -> dict[str, float | str]:
         """Give the figures of a table's row."""
@@ -56,6 +62,11 @@ class Row:
             "largest": float(arms.max()),
             "distortion": float(np.mean(self.distortion)),
             "degrees": float(np.mean(self.degrees)),
+            "feet slide, mm/frame": _millimetres([decoded for _, decoded in self.slides]),
+            "in the original": _millimetres([original for original, _ in self.slides]),
+            "feet in contact, largest, cm": max(
+                (float(f.max(initial=0)) for f in self.feet), default=0.0
+            ),
             "bits/joint sample": 8 * counted / self.joint_samples,
             "clips": len(self.distortion),
             "text": self.text,
@@ -73,6 +84,7 @@ def measure(
     model: mp.Model | None,
     name: str,
     progress: Callable[[str], None] = lambda _: None,
+    options: str = "",
 ) -> list[dict[str, float | str]]:
     """Code clips at each step of weights.
 
@@ -88,9 +100,12 @@ def measure(
         What the rows are called besides the step: which clips, which dictionary.
     progress
         Is told each clip.
+    options
+        Further parameters of the codec, such as ``protect=0.1``.
 
     """
-    rows = [Row(f"step {step:g}, {name}") for step in steps]
+    more = f",{options}" if options else ""
+    rows = [Row(f"step {step:g}{more}, {name}") for step in steps]
     for path in paths:
         progress(path.name)
         try:
@@ -101,7 +116,7 @@ def measure(
         except MocapressError:
             continue
         for row, step in zip(rows, steps, strict=True):
-            _measure(row, path, clip, places, codecs.codec(f"qssd:step={step:g}"), model)
+            _measure(row, path, clip, places, codecs.codec(f"qssd:step={step:g}{more}"), model)
     for row in rows:
         if model is not None:
             row.model = len(model_bytes(model))
@@ -111,10 +126,19 @@ def measure(
 
 def centimetres(clip: mp.Clip) -> Array:
     """Give positions of joints and ends, (F, P, 3): CMU's unit is 5.644 cm, others' 1 cm."""
-    unit = clip.skeleton.length_unit if clip.skeleton else None
-    by = _INCH / unit if unit == _CMU_LENGTH else 1.0
-    scaled: Array = by * positions(clip, end_sites=True)
+    scaled: Array = centimetres_per_unit(clip) * positions(clip, end_sites=True)
     return scaled
+
+
+def centimetres_per_unit(clip: mp.Clip) -> float:
+    """Give CMU's unit in centimetres, and 1 for all others."""
+    unit = clip.skeleton.length_unit if clip.skeleton else None
+    return _INCH / unit if unit == _CMU_LENGTH else 1.0
+
+
+def _millimetres(parts: Sequence[Array]) -> float:
+    every = np.concatenate(parts) if parts else np.empty(0)
+    return 10 * float(every.mean()) if len(every) else 0.0
 
 
 def _measure(
@@ -137,7 +161,25 @@ def _measure(
     row.arms.append(np.sqrt(((places - found) ** 2).sum(axis=-1).mean(axis=-1)))
     spread = float(np.linalg.norm(places - places.mean(axis=0)))
     row.distortion.append(100 * float(np.linalg.norm(places - found)) / spread if spread else 0.0)
+    _measure_feet(row, clip, back)
     row.degrees.append(float(turned_degrees(local_rotations(clip), local_rotations(back)).mean()))
+
+
+def _measure_feet(row: Row, clip: mp.Clip, back: mp.Clip) -> None:
+    """See how feet keep to their places while the original's stand, at 120 frames a second."""
+    try:
+        standing = contacts(clip, fps=ASSUMED_RATE)
+    except UnsupportedError:
+        return
+    assert clip.skeleton is not None
+    joints = [clip.skeleton.index(name) for name in standing]
+    frames = np.stack([*standing.values()], axis=1)
+    by = centimetres_per_unit(clip)
+    every = by * positions(clip)
+    own, found = every[:, joints], by * positions(back)[:, joints]
+    up = upward(every)
+    row.slides.append((slides(own, frames, up), slides(found, frames, up)))
+    row.feet.append(np.linalg.norm(found - own, axis=-1)[frames])
 
 
 def table(rows: Sequence[dict[str, float | str]]) -> str:

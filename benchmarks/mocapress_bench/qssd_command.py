@@ -36,6 +36,9 @@ def qssd(
     ] = "",
     training: Annotated[str, typer.Option(help="How it is learned.")] = "qssd",
     steps: Annotated[str, typer.Option(help="Steps of weights.")] = "0.25,0.5,0.75,1",
+    options: Annotated[
+        str, typer.Option(help="Further parameters of the codec: protect=0.1.")
+    ] = "",
     json: Json = None,
     markdown: Markdown = None,
     force: Force = False,
@@ -53,22 +56,28 @@ def qssd(
     rows = []
     if model:
         told = f"dictionary {model.name}"
-        rows += measure(paths, widths, mp.load_model(model), told, progress)
+        rows += measure(paths, widths, mp.load_model(model), told, progress, options)
     elif learn_from:
         seen = of_subjects(paths, root, learn_from)
         others = [path for path in paths if path not in set(seen)]
         if not others:
             usage("--learn-from leaves no clips to hold out")
         learned = mp.train(seen, training)
-        rows += measure(seen, widths, learned, "clips that the dictionary has seen", progress)
-        rows += measure(others, widths, learned, "clips held out", progress)
-        rows += measure(others, widths, None, "the same clips without a dictionary", progress)
+        rows += measure(
+            seen, widths, learned, "clips that the dictionary has seen", progress, options
+        )
+        rows += measure(others, widths, learned, "clips held out", progress, options)
+        rows += measure(
+            others, widths, None, "the same clips without a dictionary", progress, options
+        )
     else:
         for count in [int(size) for size in sizes.split(",") if size] + [len(paths)]:
             some = paths[:: -(-len(paths) // count)] if 0 < count < len(paths) else paths
             learned = mp.train(some, training)
-            rows += measure(some, widths, learned, f"dictionary of these {len(some)}", progress)
-        rows += measure(paths, widths, None, "without a dictionary", progress)
+            rows += measure(
+                some, widths, learned, f"dictionary of these {len(some)}", progress, options
+            )
+        rows += measure(paths, widths, None, "without a dictionary", progress, options)
     if not rows:
         usage("none of the clips can be read")
     print(table(rows))

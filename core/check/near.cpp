@@ -11,6 +11,7 @@
 #include "near/codec.hpp"
 #include "near/coder.hpp"
 #include "near/marks.hpp"
+#include "near/start.hpp"
 
 namespace near = mocapress::near;
 namespace check = mocapress::check;
@@ -38,6 +39,7 @@ class Writer {
   explicit Writer(std::uint64_t seed) : random_(seed) {}
 
   mocapress::Bytes payload(const near::Plan& plan) {
+    if (plan.start != nullptr) coder_ = near::Coder(plan.start->models);
     mocapress::Bit moves[2];
     mocapress::Difference<6> firsts;
     bool moved = true;
@@ -93,9 +95,10 @@ class Writer {
 }  // namespace
 
 int main() {
-  const near::Plan plan = plan_of();
+  near::Plan plan = plan_of();
   check::report("near, steps", plan.steps);
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    if (seed == 4) plan.start = &near::start_of(1, true);
     const auto payload = Writer(seed).payload(plan);
     std::vector<double> decoded(kFrames * kChannels);
     near::decode(payload, decoded.data(), kFrames, plan);

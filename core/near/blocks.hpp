@@ -53,15 +53,21 @@ struct Joints {
   std::vector<std::int32_t> parents;  // smaller than the joint; -1 for none
 };
 
+struct Start;
+
 // What all channels of a clip share, and what each has of its own.
 struct Plan {
-  bool early = true;  // whether the first spans are short
-  double knot = 0.5;  // the step of knots, in steps of the channel
-  double first = 1;   // what a coefficient of 1 stands for, in steps
+  const Start* start = nullptr;  // what coders begin with; none for nothing
+  bool early = true;             // whether the first spans are short
+  double knot = 0.5;             // the step of knots, in steps of the channel
+  double first = 1;              // what a coefficient of 1 stands for, in steps
   std::vector<double> steps;
   Joints joints;
   std::vector<Turning> turnings;
+  std::vector<double> firsts;  // what channels begin near to; nothing for 0
   bool radians = false;
+
+  double first_of(std::size_t column) const { return firsts.empty() ? 0 : firsts[column]; }
 };
 
 // 2^(exponent / 64), for -4096 <= exponent <= 4096.

@@ -7,6 +7,7 @@
 #include "coding/sides.hpp"
 #include "near/coder.hpp"
 #include "near/marks.hpp"
+#include "near/start.hpp"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-slp-vectorize")  // see blocks.cpp
@@ -53,6 +54,7 @@ class Decoding {
 
   // Which channels move, and where each begins.
   void begin() {
+    if (plan_.start != nullptr) coder_ = Coder(plan_.start->models);
     Bit moves[2];
     Difference<6> firsts;
     bool moved = true;
@@ -63,9 +65,9 @@ class Decoding {
       if (moved) {
         Channel& channel = coder_.channels.emplace_back();
         channel.index = c;
-        channel.last = number * (step * plan_.knot);
+        channel.last = plan_.first_of(c) + number * (step * plan_.knot);
       } else {
-        const double value = number * (step * 0.25);
+        const double value = plan_.first_of(c) + number * (step * 0.25);
         for (std::size_t f = 0; f < frames_; ++f) at(f, c) = value;
       }
       if (!side_.sound()) fail("the payload is cut off");
@@ -125,7 +127,9 @@ Prediction prediction_of(const Coder& coder, const Plan& plan) {
     steps.push_back(plan.steps[channel.index]);
     firsts.push_back(channel.last);
   }
-  return {sources_of(plan.joints, columns), steps, firsts, plan.early ? 3.0 : 100.0};
+  Prediction prediction(sources_of(plan.joints, columns), steps, firsts, plan.early ? 3.0 : 100.0);
+  if (plan.start != nullptr) prediction.assume(plan.start->assumed, columns);
+  return prediction;
 }
 
 void turn_back(double* values, std::size_t frames, const Plan& plan,
@@ -146,13 +150,38 @@ Plan read_header(ByteView header, std::size_t columns) {
   Record record(header);
   Plan plan;
   record.numbers(2);  // how far the clip was found to be off: for readers, not for decoding
-  const std::int64_t flags = record.integer(7);
+  const std::int64_t flags = record.integer(15);
   plan.early = (flags & 2) == 0;
   plan.radians = (flags & 4) != 0;
   plan.knot = static_cast<double>(record.integer(63) + 1) / 8;
   plan.first = static_cast<double>(record.integer(63) + 1) / 64;
   const std::int64_t base = record.signed_integer();
   if (base < -kMostExponent || base > kMostExponent) fail("steps out of bounds");
+  const auto start = static_cast<int>(record.integer(kStarts));
+  const bool known = (flags & 8) != 0;
+  if (start > 0) plan.start = &start_of(start - 1, known);
+  const auto put_steps = [&](const auto& exponents) {
+    for (const std::int64_t exponent : exponents) {
+      if (exponent < -kMostExponent || exponent > kMostExponent) fail("steps out of bounds");
+      plan.steps.push_back(step_of(static_cast<int>(exponent)));
+    }
+  };
+  if (known) {
+    const Figure& figure = known_figure();
+    if (columns != figure.exponents.size()) fail("the known figure has other columns");
+    const std::int64_t nearest = record.integer((1 << figure.turnings.size()) - 1);
+    record.end();
+    plan.joints = figure.joints;
+    plan.turnings = figure.turnings;
+    plan.firsts = figure.firsts;
+    for (std::size_t t = 0; t < plan.turnings.size(); ++t) {
+      plan.turnings[t].nearest_to_zero = (nearest >> t & 1) != 0;
+    }
+    std::vector<std::int64_t> exponents(figure.exponents.begin(), figure.exponents.end());
+    for (std::int64_t& each : exponents) each += base;
+    put_steps(exponents);
+    return plan;
+  }
   RangeReading side(record.bytes());
   record.end();
   std::vector<std::int64_t> apart(columns);
@@ -160,12 +189,12 @@ Plan read_header(ByteView header, std::size_t columns) {
   code_columns(side, apart, plan.joints, plan.turnings);
   if (!side.exhausted()) fail("what columns have of their own is cut off, too long, or cannot be");
   std::int64_t exponent = base;
+  std::vector<std::int64_t> exponents;
   for (const std::int64_t each : apart) {
     if (each < -kMostExponent || each > kMostExponent) fail("steps out of bounds");
-    exponent += 32 * each;
-    if (exponent < -kMostExponent || exponent > kMostExponent) fail("steps out of bounds");
-    plan.steps.push_back(step_of(static_cast<int>(exponent)));
+    exponents.push_back(exponent += 32 * each);
   }
+  put_steps(exponents);
   return plan;
 }
 

@@ -53,10 +53,22 @@ struct Channel {
   }
 };
 
+// What is learned of the numbers of blocks.
+struct Models {
+  Model knots{
+      kMagnitudeDecisions, {120, 100, kChannelContexts * 10, 24, 100, 120, 144, 144}, 4, 10};
+  Model classes{kEnds.size() - 1, {100, 100, kChannelContexts * 10, 24, 100, 100, 120, 100}, 6, 10};
+  Model sines{
+      kMagnitudeDecisions, {120, 100, kChannelContexts * 10, 24, 160, 120, 144, 432}, 16, 60};
+  Model splits{1, {60, 36, kChannelContexts * 10, 24, 60, 40, 144, 216}, 6, 10};
+  Model signs{1, {90, 30, kChannelContexts * 9, 9, 27, 90, 81, kChannelContexts * 9}, 2, 10};
+};
+
 // Of the channels that move, all that was coded so far, and what was learned of it.
-class Coder {
+class Coder : public Models {
  public:
   Coder() = default;
+  explicit Coder(const Models& learned) : Models(learned) {}
 
   // What a block at `start` of channel `i` of the moving ones is coded beside, when this block of
   // the span, if any, stands before it.
@@ -102,14 +114,6 @@ class Coder {
   }
 
   std::vector<Channel> channels;
-
-  Model knots{
-      kMagnitudeDecisions, {120, 100, kChannelContexts * 10, 24, 100, 120, 144, 144}, 4, 10};
-  Model classes{kEnds.size() - 1, {100, 100, kChannelContexts * 10, 24, 100, 100, 120, 100}, 6, 10};
-  Model sines{
-      kMagnitudeDecisions, {120, 100, kChannelContexts * 10, 24, 160, 120, 144, 432}, 16, 60};
-  Model splits{1, {60, 36, kChannelContexts * 10, 24, 60, 40, 144, 216}, 6, 10};
-  Model signs{1, {90, 30, kChannelContexts * 9, 9, 27, 90, 81, kChannelContexts * 9}, 2, 10};
 
  private:
   static const Block* at(const Channel& channel, int frame) {

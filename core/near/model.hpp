@@ -107,6 +107,23 @@ class Model {
     for (std::size_t i = 0; i < kContexts; ++i) tables_[i].resize(sizes[i] * decisions);
   }
 
+  // Codes what was learned in the tables of `which`, a bit for each, and by its mixers.
+  template <class Side, class Notes>
+  void code_learned(Side& side, Notes& notes, unsigned which, bool mixers) {
+    for (std::size_t i = 0; i < kContexts; ++i) {
+      if ((which >> i & 1) == 0) continue;
+      bool known = false;
+      for (std::size_t place = 0; place < tables_[i].size(); ++place) {
+        if (place % decisions_ == 0) known = true;
+        known = notes.counter(side, tables_[i][place], known);
+      }
+    }
+    if (!mixers) return;
+    for (auto* const set : {&first_, &second_}) {
+      for (Mixer& mixer : *set) notes.mixer(side, mixer);
+    }
+  }
+
   // The chance of a 1, in 1/65536.
   int chance(const Context& context, std::size_t decision) const {
     std::array<std::int32_t, kInputs> inputs;

@@ -13,7 +13,8 @@ namespace mocapress::near {
 namespace {
 
 constexpr std::size_t kMostSources = 20;
-constexpr double kFade = 0.95;  // of what was seen, in a span
+constexpr double kAssumed = 50;  // observations that count as seen where a start is known
+constexpr double kFade = 0.95;   // of what was seen, in a span
 
 // sqrt(2 / 64) cos(pi k (t + 1/2) / 64) at [64 (k - 1) + t].
 const std::vector<double>& cosines() {
@@ -108,6 +109,33 @@ Prediction::Prediction(std::vector<std::vector<std::size_t>> sources,
     own.products.assign(features * features, 0.0);
     own.targets.assign(features, 0.0);
   }
+}
+
+void Prediction::assume(const std::vector<Assumed>& all, const std::vector<std::size_t>& columns) {
+  if (all.empty()) return;
+  const auto before = [](const Assumed& one, const std::array<std::size_t, 2>& place) {
+    return std::array{one.channel, one.source} < place;
+  };
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    Own& own = channels_[i];
+    const std::size_t m = 2 * own.sources.size();
+    for (std::size_t a = 0; a < m; a += 2) {
+      const std::size_t source = own.sources[a / 2];
+      const std::array place{columns[i], columns[source]};
+      const auto found = std::lower_bound(all.begin(), all.end(), place, before);
+      if (found == all.end() || std::array{found->channel, found->source} != place) continue;
+      const double ratio = channels_[source].step / own.step;
+      const double square = kAssumed * (ratio * ratio), once = kAssumed * ratio;
+      const auto& [one, other] = found->shares;
+      own.products[a * m + a] = square * found->moved;
+      own.products[(a + 1) * m + a] = square * found->both;
+      own.products[(a + 1) * m + a + 1] = square * found->averaged;
+      own.targets[a] = once * (found->moved * one + found->both * other);
+      own.targets[a + 1] = once * (found->both * one + found->averaged * other);
+    }
+  }
+  seen_ = kAssumed;
+  caution_ = 0;
 }
 
 void Prediction::begin_span(int length) { length_ = static_cast<std::size_t>(length); }

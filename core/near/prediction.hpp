@@ -1,6 +1,7 @@
 // What of a channel the channels before it foretell, learned from what was decoded.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -13,6 +14,14 @@ namespace mocapress::near {
 std::vector<std::vector<std::size_t>> sources_of(const Joints& joints,
                                                  const std::vector<std::size_t>& columns);
 
+// What is assumed of a channel and a source, by their columns, both measured in steps: how the
+// source foretells, and of an observation the products of its moves and their averages.
+struct Assumed {
+  std::size_t channel = 0, source = 0;
+  std::array<double, 2> shares{};
+  double moved = 0, both = 0, averaged = 0;
+};
+
 // Predicts channel after channel of a span. What is foretold is how far a channel moves away from
 // its value in the frame before the span: a sum of how far the sources do, and their averages over
 // some frames.
@@ -23,6 +32,9 @@ class Prediction {
   // observations of sources that foretell nothing are assumed.
   Prediction(std::vector<std::vector<std::size_t>> sources, const std::vector<double>& steps,
              const std::vector<double>& firsts, double caution);
+
+  // Begins as if this had been seen; channels are columns.
+  void assume(const std::vector<Assumed>& all, const std::vector<std::size_t>& columns);
 
   void begin_span(int length);
   // Of channel i in the frames of the span, when those before it are told.

@@ -10,6 +10,7 @@
 #include "near/coder.hpp"
 #include "near/marks.hpp"
 #include "near/prediction.hpp"
+#include "near/start.hpp"
 #include "near_encoding/search.hpp"
 
 namespace mocapress::near {
@@ -40,6 +41,12 @@ class Encoding {
       moves_[c] = moves_[c] || wanted_[i] != wanted_[c];
     }
     weigh();
+  }
+
+  // Codes the curves once and gives what was learned.
+  Models learn() {
+    curves();
+    return coder_;
   }
 
   Coded run() {
@@ -107,7 +114,7 @@ class Encoding {
   // Codes the curves of all channels; `drawn_` is what they give.
   void curves() {
     side_ = RangeWriting();
-    coder_ = Coder();
+    coder_ = task_.plan.start != nullptr ? Coder(task_.plan.start->models) : Coder();
     drawn_.assign(frames_ * channels_, 0.0);
     begin();
     int length = 0;
@@ -137,9 +144,10 @@ class Encoding {
     for (std::size_t c = 0; c < channels_; ++c) {
       moved = side_.bit(moves[moved ? 1 : 0], moves_[c]);
       const double unit = steps_[c] * (moved ? task_.plan.knot : 0.25);
-      const auto number = std::llround(wanted_[c] / unit);
+      const double first = task_.plan.first_of(c);
+      const auto number = std::llround((wanted_[c] - first) / unit);
       firsts.code(side_, number);
-      const double value = static_cast<double>(number) * unit;
+      const double value = first + static_cast<double>(number) * unit;
       if (moved) {
         Channel& channel = coder_.channels.emplace_back();
         channel.index = c;
@@ -381,6 +389,12 @@ class Encoding {
 Coded encode(const double* values, std::size_t frames, const Task& task, const Measure& measure,
              const Measure& curves) {
   return Encoding(values, frames, task, measure, curves).run();
+}
+
+void learn(Start& start, const double* values, std::size_t frames, Task task,
+           const Measure& measure, const Measure& curves) {
+  task.plan.start = &start;
+  start.models = Encoding(values, frames, task, measure, curves).learn();
 }
 
 std::vector<double> turned(std::vector<double> values, const Plan& plan) {

@@ -34,6 +34,10 @@ struct Coded {
 Coded encode(const double* values, std::size_t frames, const Task& task, const Measure& measure,
              const Measure& curves);
 
+// Lets a start learn from values.
+void learn(Start& start, const double* values, std::size_t frames, Task task,
+           const Measure& measure, const Measure& curves);
+
 // What the curves of these values are to be, row by row.
 std::vector<double> turned(std::vector<double> values, const Plan& plan);
 

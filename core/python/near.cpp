@@ -11,6 +11,7 @@
 
 #include "coding/sides.hpp"
 #include "near/codec.hpp"
+#include "near/start.hpp"
 #include "near_encoding/encoder.hpp"
 #include "near_encoding/leverage.hpp"
 #include "python/bindings.hpp"
@@ -243,6 +244,46 @@ nb::bytes columns(std::vector<std::int64_t> apart, std::vector<std::int32_t> joi
   return to_python(side.finish());
 }
 
+// What is being learned for the start of coders.
+struct Learning {
+  std::vector<near::Assumed> told;
+  near::Start start;
+
+  // Of each: channel, source, two shares; products as powers of 2^(1/4), and how far they are one.
+  using Told = std::tuple<std::size_t, std::size_t, double, double, double, double, double>;
+
+  explicit Learning(const std::vector<Told>& all) {
+    for (const auto& [channel, source, share, other, moved, averaged, both] : all) {
+      told.push_back({channel, source, {share, other}, moved, both, averaged});
+    }
+    const Bytes packed = pack_all();
+    start = near::unpack(packed, true);
+  }
+
+  Bytes pack_all() const {
+    near::Start whole = start;
+    whole.assumed = told;
+    return near::pack(whole);
+  }
+
+  void learn(const near::Measure& measure, const near::Measure& curves,
+             const Input<double, 2>& values, const nb::bytes& header, double scale, double rate) {
+    const std::size_t frames = values.shape(0), channels = values.shape(1);
+    near::Task task{near::read_header(view(header), channels), scale, rate,
+                    std::vector(measure.points(channels), 1.0)};
+    near::learn(start, values.data(), frames, task, measure, curves);
+  }
+};
+
+std::pair<std::vector<int>, std::vector<std::array<int, 5>>> figure() {
+  const near::Figure& known = near::known_figure();
+  std::vector<std::array<int, 5>> turnings;
+  for (const near::Turning& one : known.turnings) {
+    turnings.push_back({static_cast<int>(one.first), one.columns, one.axes, one.curves, 0});
+  }
+  return {known.exponents, turnings};
+}
+
 void decode(const nb::bytes& header, const nb::bytes& payload, const Output<double, 2>& values) {
   const ByteView own = view(header), coded = view(payload);
   const nb::gil_scoped_release unlocked;
@@ -265,6 +306,16 @@ void bind_near(nb::module_& module) {
              "Give the errors of joints, (F, J), or without a skeleton of values, (F, C).");
   module.def("near_columns", &columns, nb::arg("apart"), nb::arg("joints"), nb::arg("parents"),
              nb::arg("turnings"), "Code what columns have of their own, for the header.");
+  nb::class_<Learning>(module, "NearLearning", "Learns what coders of `near` begin with.")
+      .def(nb::init<const std::vector<Learning::Told>&>(), nb::arg("assumed"),
+           "Of each: channel, source, two shares, and the products of their features.")
+      .def("learn", &Learning::learn, nb::arg("measure"), nb::arg("curves"), nb::arg("values"),
+           nb::arg("header"), nb::arg("scale"), nb::arg("rate"), "Learn from rows.")
+      .def(
+          "pack", [](const Learning& own) { return to_python(own.pack_all()); },
+          "Give what was learned, as it is shipped.");
+  module.def("near_figure", &figure,
+             "Give the known figure's exponents of steps, and its turnings.");
   module.def("near_turnable", &turnable, nb::arg("measure"), nb::arg("columns"),
              "Give the joints that end in three angles: first column, the orders of the file's\n"
              "columns and axes, and of the curves' axes, and whether angles are nearest to zero.");

@@ -1,4 +1,4 @@
-// Forward kinematics for JavaScript: viewer/page/work/placing.js calls it.
+// Forward kinematics for JavaScript: viewer/page/work/placing.js and npm/clip.js call it.
 #include "motion/kinematics.hpp"
 
 #include <cstdint>
@@ -100,6 +100,23 @@ extern "C" {
     const double* const row = space().data() + f * columns;
     if (rig->stretches(row)) return nullptr;
     rig->place(row, places.data() + f * rig->points() * 3, turns.data());
+  }
+  return places.data();
+}
+
+// What joints do relative to their parents in so many rows, which stand in the space: of each row
+// the joints' places, (J, 3), then their turns, (J, 4) with the scalar first; or null where a row
+// stretches bones.
+[[clang::export_name("place_locally")]] const double* mocapress_place_locally(std::size_t frames,
+                                                                              std::size_t columns) {
+  if (!rig) fail("no rig");
+  const std::size_t joints = rig->joints();
+  places.resize(frames * joints * 7);
+  for (std::size_t f = 0; f < frames; ++f) {
+    const double* const row = space().data() + f * columns;
+    if (rig->stretches(row)) return nullptr;
+    double* const own = places.data() + f * joints * 7;
+    rig->place_locally(row, own, own + joints * 3);
   }
   return places.data();
 }

@@ -2,9 +2,10 @@
 
 import math
 import struct
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from exact_functions import sine_cosine
+from near_starts import Start, known_figure, start_of, step_of
 from near_turning import take_turnings, turn_back
 from records import CorruptError, Record
 from streams import Bit, Coded, magnitude, symbol, tree
@@ -50,9 +51,12 @@ def within(value: int, low: int, high: int) -> int:
 class Mixed:
     """A set of mixed models; entries that were never met are as at first."""
 
-    def __init__(self) -> None:
+    def __init__(self, start: Start | None = None, name: str = "") -> None:
         self.entries: dict[tuple[int, int, int], list[int]] = {}
         self.weights: dict[tuple[int, int, int], list[int]] = {}
+        if start:
+            self.entries = {key: list(entry) for key, entry in start.entries[name].items()}
+            self.weights = {key: list(own) for key, own in start.weights[name].items()}
 
     def bit(self, stream: Coded, context: Context, decision: int = 0) -> int:
         """Take a bit."""
@@ -273,16 +277,6 @@ def state(block: Block | None) -> int:
     return 3 if block.of_class else 2 if block.numbers[0] else 1
 
 
-def step_of(exponent: int) -> float:
-    """Give 2^(exponent / 64)."""
-    step, root = 1.0, 2.0
-    for bit in (32, 16, 8, 4, 2, 1):
-        root = math.sqrt(root)
-        if exponent & bit:
-            step *= root
-    return math.ldexp(step, exponent >> 6)
-
-
 class Header:
     """The codec header: knot and one, and of columns steps, joints and these joints' parents."""
 
@@ -290,10 +284,16 @@ class Header:
         record = Record(header)
         record.numbers(2)
         flags = record.integer()
-        self.early, self.radians = flags & 2 == 0, flags & 4 != 0
+        self.early, self.radians, known = flags & 2 == 0, flags & 4 != 0, flags & 8 != 0
         self.knot = (record.integer() + 1) / 8
         self.one = (record.integer() + 1) / 64
-        exponent = record.signed()
+        exponent, start = record.signed(), record.integer()
+        self.start = start_of(start - 1, known, tuple(CHANCES.items())) if start else None
+        self.firsts = [0.0] * columns
+        if known:
+            self.take_known(exponent, record.integer(), columns)
+            record.end()
+            return
         stream, lengths = Coded(record.bytes()), tree(7)
         record.end()
         again, backs, same = [Bit(), Bit()], tree(6), False
@@ -310,6 +310,18 @@ class Header:
             self.joints.append(len(self.parents) - 1)
         self.turnings = take_turnings(stream, self.joints)
         stream.end()
+
+    def take_known(self, exponent: int, nearest: int, columns: int) -> None:
+        """Take what the known figure has."""
+        figure = known_figure()
+        if len(figure.exponents) != columns:
+            raise CorruptError("the known figure has other columns")
+        self.steps = [step_of(exponent + each) for each in figure.exponents]
+        self.joints, self.parents, self.firsts = figure.joints, figure.parents, figure.firsts
+        self.turnings = [
+            replace(turning, nearest_to_zero=bool(nearest >> i & 1))
+            for i, turning in enumerate(figure.turnings)
+        ]
 
     def above(self, joint: int) -> int:
         """Give the parent of a joint."""
@@ -351,8 +363,28 @@ class Foretelling:
         self.targets = [[0.0] * (2 * len(s)) for s in self.sources]
         self.seen = 0.0
         self.caution = 3.0 if header.early else 100.0
+        if header.start and header.start.assumed:
+            self.assume(header.start)
         self.features: list[tuple[list[float], list[float]]] = []
         self.rests: list[list[float]] = []
+
+    def assume(self, start: Start) -> None:
+        """Begin as if some had been seen."""
+        self.seen, self.caution = 50.0, 0.0
+        for i, channel in enumerate(self.channels):
+            products, targets = self.products[i], self.targets[i]
+            for k, j in enumerate(self.sources[i]):
+                source = self.channels[j]
+                one = start.assumed.get((channel.column, source.column))
+                if one is None:
+                    continue
+                ratio, a = source.step / channel.step, 2 * k
+                square, once = 50.0 * (ratio * ratio), 50.0 * ratio
+                products[a][a] = square * one.moved
+                products[a + 1][a] = square * one.both
+                products[a + 1][a + 1] = square * one.averaged
+                targets[a] = once * (one.moved * one.shares[0] + one.both * one.shares[1])
+                targets[a + 1] = once * (one.both * one.shares[0] + one.averaged * one.shares[1])
 
     def begin_span(self) -> None:
         """Begin a span."""
@@ -463,8 +495,9 @@ class Chunk:
 
     def __init__(self, payload: bytes, frames: int, header: Header) -> None:
         self.stream, self.header, self.frames = Coded(payload), header, frames
-        self.knots, self.classes, self.numbers = Mixed(), Mixed(), Mixed()
-        self.splits, self.signs = Mixed(), Mixed()
+        names = ("knots", "classes", "numbers", "splits", "signs")
+        models = [Mixed(header.start, name) for name in names]
+        self.knots, self.classes, self.numbers, self.splits, self.signs = models
         self.channels: list[Channel] = []
         self.columns: list[list[float]] = []
         self.rest: list[float] = []
@@ -506,9 +539,10 @@ class Chunk:
         for column, step in enumerate(self.header.steps):
             moves = stream.bit(models[int(moves)])
             number = difference(stream, firsts)
-            self.columns.append([number * (step * 0.25)] * self.frames)
+            first = self.header.firsts[column]
+            self.columns.append([first + number * (step * 0.25)] * self.frames)
             if moves:
-                value = number * (step * self.header.knot)
+                value = first + number * (step * self.header.knot)
                 self.channels.append(Channel(column, step, value))
         eighth, firsts = 0.7853981633974483 if self.header.radians else 45.0, tree(6)
         for turning in self.header.turnings:

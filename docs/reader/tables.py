@@ -1,4 +1,4 @@
-"""The constants of ``exact``: data files of the format, listed in docs/format/exact.md."""
+"""The constants of ``exact`` and ``near``: data files of the format, listed on its pages."""
 
 from functools import cache
 from pathlib import Path
@@ -7,9 +7,9 @@ FOLDER = Path(__file__).resolve().parents[2] / "core" / "exact" / "data"
 
 
 @cache
-def numbers(name: str) -> list[float]:
+def numbers(name: str, folder: Path = FOLDER) -> list[float]:
     """Give the numbers of a file: parted by commas, without what follows ``//`` in a line."""
-    lines = (FOLDER / f"{name}.txt").read_text().splitlines()
+    lines = (folder / f"{name}.txt").read_text().splitlines()
     text = " ".join(line.partition("//")[0] for line in lines)
     return [float(number) for number in text.split(",") if number.strip()]
 

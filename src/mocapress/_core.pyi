@@ -400,6 +400,23 @@ def near_errors(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], 
 def near_columns(apart: Sequence[int], joints: Sequence[int], parents: Sequence[int], turnings: Sequence[Sequence[int]]) -> bytes:
     """Code what columns have of their own, for the header."""
 
+class NearLearning:
+    """Learns what coders of `near` begin with."""
+
+    def __init__(self, assumed: Sequence[tuple[int, int, float, float, float, float, float]]) -> None:
+        """
+        Of each: channel, source, two shares, and the products of their features.
+        """
+
+    def learn(self, measure: NearMeasure, curves: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, scale: float, rate: float) -> None:
+        """Learn from rows."""
+
+    def pack(self) -> bytes:
+        """Give what was learned, as it is shipped."""
+
+def near_figure() -> tuple[list[int], list[list[int]]]:
+    """Give the known figure's exponents of steps, and its turnings."""
+
 def near_turnable(measure: NearMeasure, columns: Sequence[tuple[int, str]]) -> list[list[int]]:
     """
     Give the joints that end in three angles: first column, the orders of the file's

@@ -121,7 +121,7 @@ def test_json_is_for_machines(walk: Path, tmp_path: Path) -> None:
         (["verify", "x.diffma.json"], 3, "$.channels; expected a value; found nothing"),
         (["convert", "walk.amc"], 2, "say what to convert to"),
         (["compress", "empty"], 2, "no .amc or .asf or .bvh or .c3d or .csv"),
-        (["compress"], 2, "Missing argument"),
+        (["info"], 2, "Missing argument"),
         (["squeeze"], 2, "No such command"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else None,

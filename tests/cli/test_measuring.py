@@ -3,8 +3,11 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from running import mocapress
+
+import mocapress as mp
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 WALK = SAMPLES / "mocapbank.bvh"
@@ -73,3 +76,31 @@ def test_a_lossy_file_says_what_it_lost(tmp_path: Path) -> None:
     assert "bound=8.0" in shown
     for key in ("largest_error", "mean_error", "psnr"):
         assert f"{key}: {verified[key]}" in shown
+
+
+def test_the_picture_shows_where_the_errors_are(tmp_path: Path) -> None:
+    image = pytest.importorskip("PIL.Image")
+    clip = mp.read(WALK)
+    values = clip.values.copy()
+    values[300:320, [column.name for column in clip.columns].index("LeftKnee.rx")] += 30
+    mp.write(clip.with_values(values), tmp_path / "off.mcz")
+    words = ("compare", WALK, tmp_path / "off.mcz", "--picture", tmp_path / "off.png")
+    assert mocapress(*words).exit_code == 0
+    again = mocapress(*words)
+    assert (again.exit_code, "--force overwrites it" in again.stderr) == (3, True)
+    drawn = np.asarray(image.open(tmp_path / "off.png").convert("RGB"), dtype=int)
+    red = (drawn[..., 0] > 150) & (drawn[..., 1] < 80) & (drawn[..., 2] < 80)
+    columns = np.flatnonzero(red.any(axis=0))
+    # The chart begins 206 pixels from the left and is 798 wide.
+    assert 206 + 798 * 299 / 455 <= columns.min() <= columns.max() <= 206 + 798 * 321 / 455
+    wrong = mocapress(*words[:-1], tmp_path / "off.pdf")
+    assert (wrong.exit_code, "no such kind of picture" in wrong.stderr) == (2, True)
+
+
+def test_feet_have_contacts(tmp_path: Path) -> None:
+    facts = json.loads(mocapress("stats", WALK, "--json").stdout)[0]["joints"]
+    standing = {row["name"]: row["contact"] for row in facts if row["contact"] is not None}
+    assert {"LeftAnkle", "RightAnkle"} <= {*standing}
+    assert all(0 <= share <= 1 for share in standing.values())
+    assert 0 < standing["RightAnkle"] < 1
+    assert "contact" in mocapress("stats", WALK).stdout

@@ -96,3 +96,19 @@ def test_a_rate_printed_with_few_digits_is_the_rate_that_it_stands_for() -> None
     clip = mp.read(WALK)
     assert len(mp.resample(clip, 30)) == len(clip)
     assert np.array_equal(mp.resample(clip, 30).values, clip.values)
+
+
+def test_columns_of_tables_are_chosen_by_name(tmp_path: Path) -> None:
+    table = tmp_path / "some.csv"
+    words = ("convert", SAMPLES / "cmu_01_01.amc", "-o", table, "--columns")
+    assert mocapress(*words, "root.*,lfemur.rx").exit_code == 0
+    names = table.read_text().partition("\n")[0].split(",")
+    assert names == [
+        "frame",
+        *(f"root.{k}" for k in ["tx", "ty", "tz", "rx", "ry", "rz"]),
+        "lfemur.rx",
+    ]
+    wrong = mocapress(*words, "lfemr.rx", "-f")
+    assert (wrong.exit_code, "near it are" in wrong.stderr) == (2, True)
+    figure = mocapress("convert", SAMPLES / "freebvh.bvh", "--to", "amc", "--columns", "*")
+    assert (figure.exit_code, "AMC is no table" in figure.stderr) == (2, True)

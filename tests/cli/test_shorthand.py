@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from running import mocapress
+from running import mocapress, process
 
 from mocapress.cli.shorthand import spelled
 
@@ -186,3 +186,13 @@ def test_the_help_names_short_ways_exit_codes_and_debug() -> None:
     shown = mocapress("--help").output
     for promised in ("-d restores", "-1 to -9", "Exit codes:", "130: Ctrl-C", "--debug"):
         assert promised in shown
+
+
+def test_without_inputs_a_pipe_is_read(tmp_path: Path) -> None:
+    data = (SAMPLES / "freebvh.bvh").read_bytes()
+    packed = process("-1", "-c", data=data)
+    assert packed.returncode == 0
+    assert process("-d", data=packed.stdout).stdout == data
+    (tmp_path / "a.mcz").write_bytes(packed.stdout)
+    quiet = mocapress("-tq", tmp_path / "a.mcz")
+    assert (quiet.exit_code, quiet.output) == (0, "")

@@ -1,6 +1,7 @@
 """Search by example: what is found, and an index that stays right whatever is done to a library."""
 
 import json
+import os
 import re
 import sqlite3
 from collections.abc import Callable
@@ -252,7 +253,7 @@ def test_check_names_what_is_damaged(file: Path) -> None:
 
 
 def test_clips_without_an_index_get_one_when_they_are_searched(
-    samples: Path, tmp_path: Path, bank: mp.Clip
+    samples: Path, tmp_path: Path, bank: mp.Clip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "lib.mocapdb"
     words = "--codec", "exact:level=1"
@@ -265,8 +266,15 @@ def test_clips_without_an_index_get_one_when_they_are_searched(
         assert indexed(library) == {}  # it is open for reading
     (facts,) = json.loads(mocapress("library", "info", path, "--json").stdout)
     assert (facts["searchable"], facts["index_bytes"]) == (0, 0)
+    monkeypatch.setattr(os, "access", lambda *_: False)
     done = mocapress("search", path, samples / BANK)
-    assert "2 clips have no index yet" in done.stderr
+    assert "2 clips have no index for search, and the library cannot be changed" in done.stderr
+    monkeypatch.undo()
+    with mp.open_library(path) as library:
+        assert library.lacking() == 2
+    done = mocapress("search", path, samples / BANK)
+    assert "2 clips had no index for search, which is made and kept" in done.stderr
+    assert not mocapress("search", path, samples / BANK).stderr
     with mp.open_library(path, "a") as library:
         assert library.search(bank) == found
         kept = indexed(library)
@@ -276,6 +284,20 @@ def test_clips_without_an_index_get_one_when_they_are_searched(
     (facts,) = json.loads(mocapress("library", "info", path, "--json").stdout)
     sizes = [len(signature) + len(features or b"") for signature, features in kept.values()]
     assert (facts["searchable"], facts["index_bytes"]) == (2, sum(sizes))
+
+
+def test_a_search_beside_another_that_writes_makes_its_index_for_itself(
+    samples: Path, tmp_path: Path, bank: mp.Clip
+) -> None:
+    path = tmp_path / "lib.mocapdb"
+    with mp.open_library(path, "a") as library:
+        library.add(samples / BANK, codec="exact:level=1", index=False)
+    with sqlite3.connect(path) as other, mp.open_library(path, "a", wait=0.05) as library:
+        other.execute("BEGIN IMMEDIATE")
+        assert library.search(bank)[0].name == BANK
+        assert library.lacking() == 1
+        other.rollback()
+    other.close()
 
 
 def test_the_index_follows_the_clips(file: Path, bank: mp.Clip) -> None:

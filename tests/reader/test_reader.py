@@ -96,6 +96,11 @@ def test_every_codec_decodes_to_the_same_bits(tmp_path: Path, name: str, told: s
     assert_same(mp.read(path), told)
 
 
+@pytest.mark.parametrize("told", ["near:max=1cm,chunk=70", "near:max=0.1cm", "near:max=0.01cm"])
+def test_the_known_figure_of_near_decodes_to_the_same_bits(samples: Path, told: str) -> None:
+    assert_same(mp.read(samples / "cmu_01_01.amc")[: 100 if "chunk" in told else 20], told)
+
+
 def test_clips_of_a_library_come_back() -> None:
     """Chunks of one are predicted from another's, and a third shares frames."""
     golden = ROOT / "tests/golden/v1_recurring.mocapdb"
@@ -156,8 +161,9 @@ def test_the_specification_names_the_data_files_that_there_are() -> None:
     format_page = (ROOT / "docs/format.md").read_text()
     ((path, digest),) = re.findall(r"the file `(\S+)`, SHA-256 `([0-9a-f]{64})`", format_page)
     assert hashlib.sha256((ROOT / path).read_bytes()).hexdigest() == digest
-    text = (ROOT / "docs/format/exact.md").read_text()
-    told = dict(re.findall(r"\| `(\w+\.txt)` \| `([0-9a-f]{64})` \|", text))
-    folder = ROOT / "core/exact/data"
-    found = {p.name: hashlib.sha256(p.read_bytes()).hexdigest() for p in folder.iterdir()}
-    assert told == found
+    for codec in ("exact", "near"):
+        text = (ROOT / f"docs/format/{codec}.md").read_text()
+        told = dict(re.findall(r"\| `(\w+\.txt)` \| `([0-9a-f]{64})` \|", text))
+        folder = ROOT / f"core/{codec}/data"
+        found = {p.name: hashlib.sha256(p.read_bytes()).hexdigest() for p in folder.iterdir()}
+        assert told == found

@@ -15,6 +15,8 @@ from typer.testing import CliRunner
 import mocapress as mp
 from mocapress.cli.app import app
 from mocapress.container import diffma_json
+from mocapress.motion.figure import centimetres
+from mocapress.motion.kinematics import positions
 from mocapress.source import Source
 from mocapress.viewer import embed, page
 
@@ -35,6 +37,43 @@ def test_exact_values_are_exact(samples: Path) -> None:
     assert decoded.columns == clip.columns
     assert decoded.frame_time == clip.frame_time
     assert mp.positions(decoded).tobytes() == mp.positions(clip).tobytes()
+
+
+def test_an_exported_page_may_hold_motion_within_a_largest_error(
+    samples: Path, tmp_path: Path
+) -> None:
+    target = tmp_path / "page.html"
+    words = ["view", str(samples / "freebvh.bvh"), "--export", str(target), "--near", "max=0.2cm"]
+    result = CliRunner().invoke(app, words)
+    assert result.exit_code == 0, result.output
+    (made,) = embedded(target.read_text())
+    blob = base64.b64decode(str(made["mcz"]))
+    assert f"{len(blob)} of them motion, near:max=0.2cm" in result.stdout
+    clip, shown = mp.read(samples / "freebvh.bvh"), mp.load(blob)
+    apart = np.linalg.norm(positions(clip) - positions(shown), axis=2)
+    unit = centimetres(clip)
+    assert unit
+    assert 0 < apart.max() * unit <= 0.2
+    assert len(blob) < len(mp.compress(clip))
+
+
+@pytest.mark.parametrize(
+    ("option", "fault"),
+    [
+        (["--near", "max=far"], "an amount above 0"),
+        (["--near", "max=1cm", "--max-error", "1"], "instead of --max-error"),
+        (["--near", "wide=1"], "no such parameter"),
+    ],
+)
+def test_near_that_cannot_be_is_refused(
+    samples: Path, tmp_path: Path, option: list[str], fault: str
+) -> None:
+    target = tmp_path / "page.html"
+    words = ["view", str(samples / "freebvh.bvh"), "--export", str(target), *option]
+    result = CliRunner().invoke(app, words)
+    assert result.exit_code in (1, 2)
+    assert fault in result.output
+    assert not target.exists()
 
 
 @pytest.mark.parametrize("name", ["cmu_01_01.amc", "freebvh.bvh"])

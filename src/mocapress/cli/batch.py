@@ -74,6 +74,13 @@ class Job:
         return Source(named, limit=LIMIT if limit is None else limit)
 
 
+def named(inputs: list[Path] | None) -> list[Path]:
+    """Give the inputs that were named; without any, stdin, unless somebody would have to type."""
+    if not inputs and sys.stdin.isatty():
+        usage("no files are named; --help shows how")
+    return inputs or [STREAM]
+
+
 def find(inputs: Sequence[Path], suffixes: tuple[str, ...]) -> list[Job]:
     """Turn files and folders into jobs; of a folder, all files below it with these suffixes."""
     jobs = []

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mocapress.cli.options import Asf, Debug, Json, Lenient, Limit, Models
+from mocapress.cli.options import Asf, Debug, Force, Json, Lenient, Limit, Models
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -30,10 +30,19 @@ def compare(
     everything: Annotated[
         bool, typer.Option("--all", help=f"All channels and joints, not the {_SHOWN} worst.")
     ] = False,
+    picture: Annotated[
+        Path | None,
+        typer.Option(
+            "--picture",
+            help="Draw errors over time by joint, and the worst frame. Needs Pillow.",
+            metavar="OUT.png",
+        ),
+    ] = None,
     asf: Asf = None,
     models: Models = None,
     limit: Limit = None,
     lenient: Lenient = False,
+    force: Force = False,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
@@ -41,12 +50,19 @@ def compare(
     from mocapress import api
     from mocapress.cli.batch import Job, run
     from mocapress.cli.models import open_models, places_for
+    from mocapress.cli.pictures import check_kind, write_picture
+    from mocapress.difference_picture import draw_difference
     from mocapress.errors import VerificationError
     from mocapress.motion.comparing import compare as measured
+    from mocapress.storage import check_targets
 
     given = open_models(models or [])
+    if picture is not None:
+        check_kind(picture, "--picture")
 
     def work(job: "Job") -> dict[str, Any]:
+        if picture is not None:
+            check_targets([picture], force=force)
         clips = []
         for path in (first, second):
             source = Job(path, path.parent).opened(limit)
@@ -54,11 +70,15 @@ def compare(
             clip = api.read_source(source, asf, models=places, strict=not lenient)
             clips.append(clip)
         found = measured(*clips)
+        if picture is not None:
+            drawn = draw_difference(clips[0], clips[1], found, (str(first), str(second)))
+            write_picture(picture, drawn, force=force)
         facts: dict[str, Any] = {
             "second": str(second),
             "frames": len(clips[0]),
             "largest_error": found.most,
             "psnr": found.psnr,
+            "picture": None if picture is None else str(picture),
             "channels": _rows(found.channels, found.largest, found.mean),
             "joints": _rows(found.joints, found.largest_distance, found.mean_distance),
             "bones": _rows(found.bones, found.largest_drift, found.mean_drift),

@@ -12,11 +12,11 @@ from mocapress.cli.options import (
     Asf,
     Debug,
     Force,
-    Inputs,
     Jobs,
     Json,
     Output,
     Parents,
+    Piped,
     Quiet,
     Remove,
     SkipExisting,
@@ -46,7 +46,7 @@ _ENDINGS = {
 
 
 def compress(
-    inputs: Inputs,
+    inputs: Piped = None,
     output: Output = None,
     codec: Annotated[
         str | None,
@@ -119,7 +119,7 @@ def compress(
     from math import isfinite
 
     from mocapress import api
-    from mocapress.cli.batch import find, run, usage
+    from mocapress.cli.batch import find, named, run, usage
     from mocapress.cli.models import open_model
     from mocapress.cli.sizes import show_sizes, show_total
     from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
@@ -128,6 +128,7 @@ def compress(
     from mocapress.formats import formats, suffixes
     from mocapress.source import JSON_SUFFIXES
 
+    sources = named(inputs)
     learned = open_model(model) if model else None
     to = to or _kind_of(output)
     refuse_other_kinds(output, _ENDINGS[to], known_endings())
@@ -135,10 +136,10 @@ def compress(
     kinds = [of for of in formats() if of.split or (of.read_skeleton and made.lossless)]
     endings = suffixes(kinds)
     if stream or rate is not None:
-        _stream(inputs, output, made, learned, rate, stream=stream, debug=debug)
+        _stream(sources, output, made, learned, rate, stream=stream, debug=debug)
         return
     files = plan(
-        find(inputs, endings),
+        find(sources, endings),
         output,
         partial(_compressed_name, to=to),
         force=force,
@@ -151,7 +152,7 @@ def compress(
     )
     if remove and not made.lossless:
         usage(f"--rm: {made.id} is lossy, and what it leaves out is only in the originals")
-    say_what_is_left_out(inputs, (*endings, *_ENDINGS[Packed.MCZ], *JSON_SUFFIXES))
+    say_what_is_left_out(sources, (*endings, *_ENDINGS[Packed.MCZ], *JSON_SUFFIXES))
 
     def work(job: "Job") -> dict[str, Any]:
         assert job.target is not None

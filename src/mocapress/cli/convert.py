@@ -16,8 +16,9 @@ from mocapress.cli.options import (
     Limit,
     Models,
     Output,
+    Quiet,
 )
-from mocapress.cli.selecting import Every, Frames, Resample, Retime, Selection, Time
+from mocapress.cli.selecting import Columns, Every, Frames, Resample, Retime, Selection, Time
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -52,6 +53,7 @@ def convert(
     every: Every = None,
     resample: Resample = None,
     retime: Retime = None,
+    columns: Columns = None,
     fps: Annotated[
         float | None,
         typer.Option("--fps", help="Frames per second of files that do not state them.", min=1e-3),
@@ -67,6 +69,7 @@ def convert(
     lenient: Lenient = False,
     jobs: Jobs = 1,
     force: Force = False,
+    quiet: Quiet = False,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
@@ -75,18 +78,21 @@ def convert(
     Nothing is rescaled, but that a GLB has metres.
     """
     from mocapress import api
-    from mocapress.cli.batch import STREAM, find, run
+    from mocapress.cli.batch import STREAM, find, run, usage
     from mocapress.cli.models import open_models, places_for
     from mocapress.cli.targets import known_endings, plan, refuse_other_kinds
     from mocapress.container import diffma_json
-    from mocapress.formats import by_id, readable, suffixes
+    from mocapress.formats import by_id, readable, suffixes, writable
     from mocapress.motion.convert import with_rate
     from mocapress.motion.lengths import constant_lengths
     from mocapress.storage import is_stream
 
-    wanted = Selection(frames, time, every, resample, retime, fps)
+    wanted = Selection(frames, time, every, resample, retime, fps, columns)
     made = _format(to, output)
     refuse_other_kinds(output, made.suffixes, known_endings())
+    if columns is not None and not made.any_columns:
+        tables = ", ".join(of.id for of in writable() if of.any_columns)
+        usage(f"--columns: {made.name} is no table; those are {tables}")
     given = open_models(models or [])
 
     def rename(source: Path) -> Path:
@@ -125,7 +131,7 @@ def convert(
             "skeleton_found": clip.metadata.get("skeleton_found"),
         }
 
-    run(files, work, threads=jobs, json=json, show=_show, debug=debug)
+    run(files, work, threads=jobs, json=json, show=_show, quiet=quiet, debug=debug)
 
 
 def _format(to: str | None, output: str | None) -> "Format":

@@ -8,13 +8,13 @@ import typer
 from mocapress.cli.options import (
     Debug,
     Force,
-    Inputs,
     Jobs,
     Json,
     Limit,
     Models,
     Output,
     Parents,
+    Piped,
     Quiet,
     Remove,
     SkipExisting,
@@ -32,7 +32,7 @@ T = TypeVar("T")
 
 
 def decompress(
-    inputs: Inputs,
+    inputs: Piped = None,
     output: Output = None,
     models: Models = None,
     limit: Limit = None,
@@ -59,7 +59,7 @@ def decompress(
 ) -> None:
     """Restore the original files: byte for byte or, after a lossy codec, with decoded values."""
     from mocapress import api
-    from mocapress.cli.batch import STREAM, find, run
+    from mocapress.cli.batch import STREAM, find, named, run
     from mocapress.cli.models import open_models, places_for
     from mocapress.cli.sizes import show_sizes, show_total
     from mocapress.cli.targets import plan
@@ -68,7 +68,7 @@ def decompress(
 
     given = open_models(models or [])
     files = plan(
-        find(inputs, (".mcz", *JSON_SUFFIXES)),
+        find(named(inputs), (".mcz", *JSON_SUFFIXES)),
         output,
         _original_name,
         force=force,

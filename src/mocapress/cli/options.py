@@ -9,6 +9,15 @@ import typer
 Inputs = Annotated[
     list[Path], typer.Argument(help="Files or folders; - is stdin.", show_default=False)
 ]
+Piped = Annotated[
+    list[Path] | None,
+    typer.Argument(
+        metavar="INPUTS...",
+        help="Files or folders; - is stdin, which is also read where none is given and it is no "
+        "terminal.",
+        show_default=False,
+    ),
+]
 # A text and not a path, as the slash at the end of a folder's name says something.
 Output = Annotated[
     str | None,

@@ -49,7 +49,8 @@ class Report:
             print("[" if not self.reported else ",", _json(job), sep="\n")
         elif job.error is not None:
             self._warn(job)
-            say(message(job.error, str(job.source)))
+            if not isinstance(job.error, BrokenPipeError):  # whoever read stdout has seen enough
+                say(message(job.error, str(job.source)))
         elif not self.quiet:
             self._warn(job)
             self.show(job)

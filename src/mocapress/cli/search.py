@@ -1,5 +1,7 @@
 """``search``."""
 
+import os
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,10 +12,11 @@ from mocapress.cli.options import Asf, Debug, Force, Joints, Json, Models
 from mocapress.cli.selecting import Frames, Seconds, Time
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from mocapress.library import Library, SearchHit, StoredClip
     from mocapress.library.sheet import Tile
+    from mocapress.models import Place
     from mocapress.motion import Clip
 
 _PLAYED = 5
@@ -76,7 +79,6 @@ def search(
     from mocapress.cli.batch import usage
     from mocapress.cli.models import open_models
     from mocapress.cli.pictures import check_kind
-    from mocapress.cli.report import say
     from mocapress.search.joint_names import read_mapping
     from mocapress.storage import check_targets
 
@@ -84,14 +86,11 @@ def search(
         usage("--frames and --time exclude each other")
     if sheet:
         check_kind(sheet, "--sheet")
-    with opened(file, debug=debug, models=open_models(models or [])) as library:
+    with _searchable(file, debug=debug, models=open_models(models or [])) as library:
         if sheet:
             check_targets([sheet], force=force)
         clip = _clip(library, query, asf)
         stretch = frames if time is None else _stretch(clip, time)
-        missing = library.lacking()
-        if missing:
-            say(f"{file}: {missing} clips have no index yet; library reindex makes and keeps it")
         hits = library.search(
             clip,
             frames=stretch,
@@ -107,6 +106,31 @@ def search(
             _draw(library, clip, stretch, hits, sheet, force=force)
         if view:
             _play(library, clip, stretch, hits, browser=browser)
+
+
+@contextmanager
+def _searchable(file: str, *, debug: bool, models: "Sequence[Place]") -> "Iterator[Library]":
+    """Open a library; the index that clips lack is made now, and kept where that is possible."""
+    from mocapress.cli.report import say
+    from mocapress.library.library import is_sharded
+
+    with opened(file, debug=debug, models=models) as library:
+        missing = library.lacking()
+        place = Path(library.location)
+        kept = not is_sharded(library.location) and all(
+            os.access(there, os.W_OK) for there in (place, place.parent)
+        )
+        if missing and not kept:
+            say(
+                f"{file}: {missing} clips have no index for search, and the library cannot be "
+                "changed here: it is made for this search alone"
+            )
+        if not missing or not kept:
+            yield library
+            return
+    say(f"{file}: {missing} clips had no index for search, which is made and kept")
+    with opened(file, "a", debug=debug, models=models) as library:
+        yield library
 
 
 def _clip(library: "Library", query: str, asf: Path | None) -> "Clip | StoredClip":
@@ -127,9 +151,13 @@ def _clip(library: "Library", query: str, asf: Path | None) -> "Clip | StoredCli
 
 
 def _stretch(clip: "Clip | StoredClip", time: Seconds) -> slice:
+    from fractions import Fraction
+
+    from mocapress.motion.editing import frames_between
     from mocapress.search.standard import ASSUMED_RATE
 
-    return time.frames(float(clip.frame_time or 1 / ASSUMED_RATE))
+    frame_time = Fraction(clip.frame_time or 1 / ASSUMED_RATE)
+    return frames_between(time.start, time.end, frame_time)
 
 
 def _row(rank: int, hit: "SearchHit") -> dict[str, Any]:

@@ -18,12 +18,6 @@ class Seconds:
     start: float
     end: float | None
 
-    def frames(self, frame_time: float) -> slice:
-        """Give the frames in it."""
-        first = round(self.start / frame_time)
-        last = None if self.end is None else max(round(self.end / frame_time), first)
-        return slice(first, last)
-
 
 def _frames(text: str) -> slice:
     """Read ``a:b``; as in Python, ends may be missing, and negative ones count from the last."""
@@ -63,6 +57,14 @@ Time = Annotated[
 Every = Annotated[
     int | None, typer.Option("--every", min=1, metavar="N", help="Only every Nth frame.")
 ]
+Columns = Annotated[
+    str | None,
+    typer.Option(
+        "--columns",
+        metavar="NAMES",
+        help="Only these columns, separated by commas, e.g. root.*,lfemur.rx; for tables.",
+    ),
+]
 Resample = Annotated[
     float | None,
     typer.Option(
@@ -91,6 +93,7 @@ class Selection:
     retime: float | None = None
     fps: float | None = None
     """The rate of a clip that states none."""
+    columns: str | None = None
 
     def __post_init__(self) -> None:
         from mocapress.cli.batch import usage
@@ -139,7 +142,9 @@ class Selection:
             )
         if self.resample is not None:
             clip = editing.resample(clip, self.resample)
-        return clip if self.retime is None else editing.retime(clip, self.retime)
+        if self.retime is not None:
+            clip = editing.retime(clip, self.retime)
+        return clip if self.columns is None else editing.only(clip, self.columns.split(","))
 
 
 _SAME_RATE = 1e-3

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from mocapress.cli.options import Debug, Inputs, Jobs, Json, Limit, Models
+from mocapress.cli.options import Debug, Inputs, Jobs, Json, Limit, Models, Quiet, Verbose
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -13,6 +13,8 @@ def verify(
     models: Models = None,
     limit: Limit = None,
     jobs: Jobs = 1,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
@@ -36,7 +38,17 @@ def verify(
             raise CorruptError("; ".join(parts))
         return {"raw_bytes": checked.raw_bytes, "ok": True, "loss": dict(checked.loss) or None}
 
-    run(files, work, threads=jobs, json=json, show=_show, failure_code=3, debug=debug)
+    run(
+        files,
+        work,
+        threads=jobs,
+        json=json,
+        show=_show,
+        failure_code=3,
+        quiet=quiet,
+        verbose=verbose,
+        debug=debug,
+    )
 
 
 def _show(job: "Job") -> None:

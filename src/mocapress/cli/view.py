@@ -1,7 +1,8 @@
 """``view``."""
 
+from base64 import b64decode
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -37,6 +38,14 @@ def view(
             min=1e-12,
         ),
     ] = None,
+    near: Annotated[
+        str | None,
+        typer.Option(
+            "--near",
+            help="Export motion by the codec near with these parameters, e.g. max=0.1cm or "
+            "p=0.1cm, instead of exact values.",
+        ),
+    ] = None,
     asf: Asf = None,
     port: Annotated[
         int,
@@ -50,6 +59,8 @@ def view(
     debug: Debug = False,
 ) -> None:
     """Play motion files in the browser, side by side, or write a page that plays them."""
+    from mocapress import codecs
+    from mocapress.cli.batch import usage
     from mocapress.cli.report import message, say
     from mocapress.cli.targets import known_endings, refuse_other_kinds
     from mocapress.cli.warned import collecting, kept
@@ -63,9 +74,12 @@ def view(
         return
     inputs = _found([Path(name) for name in files or []])
     refuse_other_kinds(str(export) if export else None, (".html",), known_endings())
+    if near is not None and (max_error is not None or not export):
+        usage("--near is for --export, instead of --max-error")
     stated = max_error if export else None
-    name = ""
+    name = "--near" if near is not None else ""
     try:
+        lossy = codecs.codec(f"near:{near}") if near is not None else None
         if export:
             check_targets([export], force=force)
         clips = []
@@ -76,6 +90,7 @@ def view(
                     path,
                     asf_path=asf,
                     max_error=stated,
+                    near=lossy,
                     level=embed.LEVEL if export else embed.FAST,
                     strict=not lenient,
                 )
@@ -96,7 +111,7 @@ def view(
         say(message(error, name))
         raise typer.Exit(1) from error
     if export:
-        print(f"{export}: {len(document.encode())} bytes, {_exactness(stated)}")
+        print(f"{export}: {len(document.encode())} bytes, {_exactness(stated, near, clips)}")
     else:
         serve(document, port, browser=browser, more=nothing)
 
@@ -174,5 +189,8 @@ def serve(
             print()
 
 
-def _exactness(max_error: float | None) -> str:
+def _exactness(max_error: float | None, near: str | None, clips: list[dict[str, Any]]) -> str:
+    if near is not None:
+        motion = sum(len(b64decode(clip["mcz"])) for clip in clips if "mcz" in clip)
+        return f"{motion} of them motion, near:{near}"
     return "exact values" if max_error is None else f"no value off by more than {max_error:g}"

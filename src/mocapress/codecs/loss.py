@@ -1,5 +1,6 @@
 """What a lossy codec lost, measured on its decoder's output."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 
 from mocapress.codecs.contract import Codec
 from mocapress.errors import VerificationError
-from mocapress.motion import Clip
+from mocapress.motion import Clip, Column
 from mocapress.motion.comparing import errors_of
 
 
@@ -24,10 +25,15 @@ class Loss:
     """-10 log10 of the mean squared error over all finite values, dB; infinite without error."""
 
     @classmethod
-    def of(cls, original: NDArray[np.float64], decoded: NDArray[np.float64]) -> Self:
-        """Measure the loss of (F, C) values."""
+    def of(
+        cls,
+        original: NDArray[np.float64],
+        decoded: NDArray[np.float64],
+        columns: Sequence[Column] = (),
+    ) -> Self:
+        """Measure the loss of (F, C) values; of columns that are angles, modulo whole turns."""
         finite = np.isfinite(original)
-        errors = errors_of(original, decoded)
+        errors = errors_of(original, decoded, columns)
         known = errors[finite]
         with np.errstate(over="ignore"):
             square = float((known**2).mean()) if known.size else 0.0
@@ -57,23 +63,24 @@ LOSS_NOTES = ("largest_error", "mean_error", "psnr")
 def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss:
     """Measure what a codec lost, and check that it kept its bounds.
 
+    An angle that is off by whole turns has lost nothing, unless a bound was asked for.
+
     Raises
     ------
     VerificationError
         When a channel's error is above its bound.
 
     """
-    loss = Loss.of(clip.values, decoded)
-    for column, error, bound in zip(
-        clip.columns, loss.largest, codec.largest_errors(clip.columns), strict=True
-    ):
+    bounds = codec.largest_errors(clip.columns)
+    bounded = Loss.of(clip.values, decoded)
+    for column, error, bound in zip(clip.columns, bounded.largest, bounds, strict=True):
         if error > bound:
             raise VerificationError(
                 f"codec {codec.id} breaks its bound in channel {column.name}; please report this",
                 expected=f"errors up to {bound:g}",
                 found=f"{error:g}",
             )
-    return loss
+    return Loss.of(clip.values, decoded, clip.columns)
 
 
 def missed_target(codec: Codec, loss: Loss) -> str | None:

@@ -146,6 +146,8 @@ class Format:
     ``ParameterError``."""
     written: tuple[str, ...] = ()
     """The suffixes that ``write`` is for, where it is not for all."""
+    any_columns: bool = False
+    """Whether files hold any columns, those of some channels alone, too."""
     timed: bool = True
     """Whether files have to state their frame time."""
     companion: str | None = None

@@ -67,5 +67,6 @@ FORMAT = Format(
     read_layout=partial(read_layout, kind="npz"),
     fit=with_frames,
     write=write,
+    any_columns=True,
     timed=False,
 )

@@ -53,5 +53,6 @@ FORMAT = Format(
     recognises=lambda _: False,
     fit=with_frames,
     write=write,
+    any_columns=True,
     timed=False,
 )

@@ -259,6 +259,7 @@ FORMAT = Format(
     fit=with_frames,
     write=write_csv,
     written=(".csv",),
+    any_columns=True,
     timed=False,
     read_layout=partial(read_layout, kind=CSV),
     describe=described,

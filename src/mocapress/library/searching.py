@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from mocapress.errors import (
+    BusyError,
     FormatError,
     LimitError,
     MocapressError,
@@ -88,6 +89,7 @@ def completed(library: "Finding") -> Searchable:
     with library.db.reading() as connection:
         kept = index.signatures(connection)
     found, made = dict(kept), dict[int, Entry]()
+    keeping = library.db.writable
     for clip, signature in kept:
         if signature is not None:
             continue
@@ -96,11 +98,14 @@ def completed(library: "Finding") -> Searchable:
         except MocapressError:
             continue  # damaged: `library check` tells
         found[clip] = entry.signature
-        if library.db.writable:
-            with library.db.writing() as connection:
-                index.write(connection, clip, entry)
-        else:
-            made[clip] = entry
+        if keeping:
+            try:
+                with library.db.writing() as connection:
+                    index.write(connection, clip, entry)
+                continue
+            except BusyError:  # others are at work: nothing is lost but time
+                keeping = False
+        made[clip] = entry
     there = {clip: signature for clip, signature in found.items() if signature}
     return Searchable([*there], [*there.values()], made)
 

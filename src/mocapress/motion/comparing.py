@@ -1,14 +1,19 @@
 """How far two clips of the same motion are from each other."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from math import tau
 
 import numpy as np
 
 from mocapress.errors import ParameterError
-from mocapress.motion.clip import Clip
+from mocapress.motion.clip import Clip, Column
 from mocapress.motion.kinematics import Array, positions
 from mocapress.motion.lengths import bone_drift, bones
 from mocapress.motion.markers import POINTS, markers
+
+_TURN = {"deg": 360.0, "rad": tau}
+"""A whole turn by unit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,12 +30,16 @@ class Difference:
         (C,) mean error of each channel.
     psnr
         -10 log10 of the mean squared error of all values, dB; infinite without error.
+    errors
+        (F, C) error of each channel in each frame.
     joints
         Names of the joints; empty without skeletons.
     largest_distance
         (J,) largest distance of each joint, length units of the file; None without skeletons.
     mean_distance
         (J,) mean distance of each joint.
+    distances
+        (F, J) distance of each joint in each frame.
     bones
         Of markers: pairs whose distance stays in the first clip (``mp.bones``).
     largest_drift
@@ -44,9 +53,11 @@ class Difference:
     largest: Array
     mean: Array
     psnr: float
+    errors: Array
     joints: tuple[str, ...] = ()
     largest_distance: Array | None = None
     mean_distance: Array | None = None
+    distances: Array | None = None
     bones: tuple[str, ...] = ()
     largest_drift: Array | None = None
     mean_drift: Array | None = None
@@ -63,9 +74,9 @@ def compare(first: Clip, second: Clip) -> Difference:
     Parameters
     ----------
     first, second
-        Of the same columns, by name; angles count as numbers, so that 359 and -1 degrees differ by
-        360. Where both have a skeleton, positions of joints are compared, too, each clip's by its
-        own.
+        Of the same columns, by name. Angles count modulo a whole turn, so that 359 and -1 degrees
+        are the same. Where both have a skeleton, positions of joints are compared, too, each clip's
+        by its own.
 
     Raises
     ------
@@ -79,7 +90,7 @@ def compare(first: Clip, second: Clip) -> Difference:
     if first.frames != second.frames:
         raise ParameterError("frames", expected=str(first.frames), found=str(second.frames))
     a, b = first.values, second.values
-    errors = errors_of(a, b)
+    errors = errors_of(a, b, first.columns)
     with np.errstate(over="ignore"):
         square = float(np.square(errors).mean()) if errors.size else 0.0
         psnr = float(-10 * np.log10(square)) if square else float("inf")
@@ -101,20 +112,32 @@ def compare(first: Clip, second: Clip) -> Difference:
         errors.max(axis=0, initial=0),
         _mean(errors),
         psnr,
+        errors,
         joints,
         None if distances is None else distances.max(axis=0, initial=0),
         None if distances is None else _mean(distances),
+        distances,
         tied,
         None if drift is None else drift.max(axis=0, initial=0),
         None if drift is None else _mean(drift),
     )
 
 
-def errors_of(original: Array, decoded: Array) -> Array:
-    """Give the errors of values, 0 or above: infinite where one of two is not finite."""
+def errors_of(original: Array, decoded: Array, columns: Sequence[Column] = ()) -> Array:
+    """Give the errors of values, 0 or above: infinite where one of two is not finite.
+
+    Of columns that are angles, by what remains of the error beside whole turns.
+    """
     same = (original == decoded) | (np.isnan(original) & np.isnan(decoded))
     with np.errstate(invalid="ignore", over="ignore"):
         errors: Array = np.abs(original - decoded)
+    for c, column in enumerate(columns):
+        if turn := _TURN.get(column.unit):
+            own = errors[:, c]
+            with np.errstate(invalid="ignore"):
+                errors[:, c] = np.where(
+                    own > turn / 2, np.abs(own - turn * np.rint(own / turn)), own
+                )
     errors[same] = 0
     errors[~same & ~(np.isfinite(original) & np.isfinite(decoded))] = np.inf
     return errors

@@ -4,6 +4,8 @@ import re
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from decimal import Decimal
+from fnmatch import fnmatchcase
 from fractions import Fraction
 
 import numpy as np
@@ -13,7 +15,7 @@ from mocapress.motion.clip import Clip, Column, Stream
 from mocapress.motion.convert import with_rate
 from mocapress.motion.frame_time import of_rate
 from mocapress.motion.kinematics import Array
-from mocapress.motion.skeleton import Joint, Skeleton, Vec3
+from mocapress.motion.skeleton import Joint, Skeleton, Vec3, near
 
 _SIDES = (
     re.compile("left|right"),
@@ -66,6 +68,39 @@ def _named(columns: Sequence[Column]) -> list[tuple[str, str]]:
     return [(column.name, column.unit) for column in columns]
 
 
+def only(clip: Clip, names: Sequence[str]) -> Clip:
+    """Give the columns of some names, without the skeleton, which needs all of its own.
+
+    Parameters
+    ----------
+    clip
+        Any; streams of which no column is left are left out.
+    names
+        Of columns; ``*``, ``?`` and ``[...]`` stand for others, as in a shell: ``root.*``.
+
+    Raises
+    ------
+    ParameterError
+        When one of them is no column's.
+
+    """
+    known = [column.name for stream in clip.streams.values() for column in stream.columns]
+    for name in names:
+        if not any(fnmatchcase(one, name) for one in known):
+            raise ParameterError(f"no column {near(name, known)}")
+    streams = {}
+    for name, stream in clip.streams.items():
+        kept = [
+            c
+            for c, column in enumerate(stream.columns)
+            if any(fnmatchcase(column.name, wanted) for wanted in names)
+        ]
+        if kept:
+            columns = tuple(replace(stream.columns[c], joint=-1) for c in kept)
+            streams[name] = replace(stream, values=stream.values[:, kept], columns=columns)
+    return replace(clip, streams=streams, skeleton=None)
+
+
 def crop(clip: Clip, start: float = 0, end: float | None = None) -> Clip:
     """Give the frames of a clip from one time to another, the last not included.
 
@@ -84,9 +119,14 @@ def crop(clip: Clip, start: float = 0, end: float | None = None) -> Clip:
     """
     if clip.frame_time is None:
         raise UnsupportedError("the sampling rate is not known; mp.retime states it")
-    step = float(clip.frame_time)
+    return clip[frames_between(start, end, clip.frame_time)]
+
+
+def frames_between(start: float, end: float | None, frame_time: Decimal | Fraction) -> slice:
+    """Give the frames from one time to another, in seconds from the first; None is the end."""
+    step = float(frame_time)
     first = max(round(start / step), 0)
-    return clip[first : None if end is None else max(round(end / step), first)]
+    return slice(first, None if end is None else max(round(end / step), first))
 
 
 def retime(clip: Clip, fps: float) -> Clip:

@@ -11,9 +11,11 @@ from mocapress.motion.clip import Clip
 from mocapress.motion.markers import POINTS, markers
 
 Array = NDArray[np.float64]
-_STAYS = 0.05
+_STAYS = 0.02
 """Of a mean length: standard deviation up to which it counts as one that is kept."""
 _MOST_LOOKED_AT = 500
+_OFTEN = 0.1
+"""Of the frames in which both must be there: a distance in a few of them says little."""
 _MOST_MARKERS = 512
 _SWEEPS = 8
 
@@ -152,7 +154,7 @@ def _kept(places: Array) -> tuple[Array, Array]:
     for i in range(count):
         away = np.linalg.norm(places - places[:, i : i + 1], axis=2)
         seen = np.isfinite(away).sum(axis=0)
-        known = seen > 0
+        known = seen > _OFTEN * len(places)
         means[i, known] = np.nansum(away[:, known], axis=0) / seen[known]
         squares = np.nansum((away[:, known] - means[i, known]) ** 2, axis=0)
         spreads[i, known] = np.sqrt(squares / seen[known])

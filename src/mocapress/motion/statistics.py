@@ -23,7 +23,8 @@ def statistics(clip: Clip) -> dict[str, list[dict[str, Any]]]:
         ``channels``: name, low, high, mean, deviation, and largest speed, of the first stream, in
         the unit of the channel. ``joints``, if there is a skeleton that can be placed: name, the
         extent of the joint's way along x, y and z, its length, and mean and largest speed, in
-        length units of the file. Speeds are per second, or per frame where no rate is known.
+        length units of the file; of feet, ``contact``: the part of the frames in which they stand.
+        Speeds are per second, or per frame where no rate is known, and contacts are not either.
 
     """
     rate = clip.fps or 1.0
@@ -58,6 +59,10 @@ def _joints(clip: Clip, rate: float) -> list[dict[str, Any]]:
     steps = np.linalg.norm(np.diff(placed, axis=0), axis=2)
     steps = steps if len(steps) else np.zeros((1, placed.shape[1]))
     extent = np.ptp(placed, axis=0)
+    try:
+        standing = clip.contacts()
+    except UnsupportedError:  # no feet, or no rate
+        standing = {}
     return [
         {
             "name": name,
@@ -65,6 +70,7 @@ def _joints(clip: Clip, rate: float) -> list[dict[str, Any]]:
             "way": float(steps[:, j].sum()),
             "mean_speed": float(steps[:, j].mean() * rate),
             "largest_speed": float(steps[:, j].max() * rate),
+            "contact": float(standing[name].mean()) if name in standing else None,
         }
         for j, name in enumerate(clip.skeleton.names)
     ]

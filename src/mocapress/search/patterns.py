@@ -5,7 +5,7 @@ how. Here segments of each body part are cut and clustered as by the codec ``pat
 query and all clips that are compared; a clip is a string of patterns for each part.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,21 +50,26 @@ def pattern_distances(
 
     """
     queries = [query, query.mirrored()] if mirror else [query]
+    by_use, by_edits = distances_of(queries, list(clips))
+    found: Array = (by_use + by_edits).min(axis=0) / 2
+    return found
+
+
+def distances_of(
+    queries: Sequence[StandardMotion], clips: Sequence[StandardMotion]
+) -> tuple[Array, Array]:
+    """Give distances by histograms and by edits, (Q, N) each: means over body parts, 0 to 1."""
     motions = [*queries, *clips]
-    total = np.zeros((len(queries), len(motions) - len(queries)))
-    for reference, joints in _PARTS:
+    by_use, by_edits = np.zeros((2, len(queries), len(clips)))
+    for reference, joints in _PARTS if clips else ():
         words = _words([_part(motion, reference, joints) for motion in motions])
         own, others = words[: len(queries)], words[len(queries) :]
-        if not others:
-            break
         histograms = _histograms(words)
-        alike = histograms[: len(queries)] @ histograms[len(queries) :].T
-        edits = [
+        by_use += 1 - histograms[: len(queries)] @ histograms[len(queries) :].T
+        by_edits += [
             [_edits(word, other) / max(len(word), len(other)) for other in others] for word in own
         ]
-        total += (1 - alike + np.array(edits)) / (2 * len(_PARTS))
-    found: Array = total.min(axis=0)
-    return found
+    return by_use / len(_PARTS), by_edits / len(_PARTS)
 
 
 def _part(motion: StandardMotion, reference: str, joints: tuple[str, ...]) -> Array:

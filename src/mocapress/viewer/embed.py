@@ -11,6 +11,7 @@ import numpy as np
 
 from mocapress import api
 from mocapress.api.opening import Opened
+from mocapress.codecs import Codec
 from mocapress.codecs.diffma import DiffMA
 from mocapress.codecs.exact import Exact
 from mocapress.container import Head, Mcz, MczWriter, diffma_json, open_mcz
@@ -32,6 +33,7 @@ def file(
     *,
     asf_path: Path | None = None,
     max_error: float | None = None,
+    near: Codec | None = None,
     level: int = LEVEL,
     strict: bool = True,
 ) -> dict[str, Any]:
@@ -46,6 +48,8 @@ def file(
         The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
     max_error
         Largest error of a value, in its unit, as DiffMA JSON; None embeds exact values.
+    near
+        The lossy codec that is to code the motion anew, which the page has the decoder of.
     level
         Of the codec ``exact``.
     strict
@@ -69,6 +73,8 @@ def file(
             raise UnsupportedError("no frames to be played")
         if max_error is not None:
             return approximate(clip, max_error, path.name)
+        if near is not None:
+            return lossy(clip, near, path.name)
         if source.kind == MCZ and (blob := as_coded(Opened(source).mcz, clip)):
             return _named(clip, path.name) | {"mcz": base64.b64encode(blob).decode()}
         return exact(clip, path.name, level=level)
@@ -87,6 +93,22 @@ def exact(clip: Clip, name: str = "", *, level: int = LEVEL) -> dict[str, Any]:
 
     """
     blob = coded_anew(clip, level=level)
+    return _named(clip, name) | {"mcz": base64.b64encode(blob).decode()}
+
+
+def lossy(clip: Clip, codec: Codec, name: str = "") -> dict[str, Any]:
+    """Give a clip's first stream, coded by a lossy codec.
+
+    Raises
+    ------
+    ParameterError
+        When a length is asked for, and nothing says how long the clip's units are.
+    UnsupportedError
+        When a ``.mcz`` cannot hold the clip.
+
+    """
+    alone = Clip(dict([next(iter(clip.streams.items()))]), clip.skeleton)
+    blob = api.compress_clip(codec.prepared(alone), codec).blob
     return _named(clip, name) | {"mcz": base64.b64encode(blob).decode()}
 
 

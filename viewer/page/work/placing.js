@@ -1,10 +1,10 @@
 import { instantiate } from "../../mcz/instance.js";
+import { rigOf } from "../../mcz/rig.js";
 import { FileError } from "../reading/file_error.js";
 
 // Places of points that fit a browser's memory: three hours of a person at 120 frames a second.
 const MOST_PLACES = 5e7;
 const TOGETHER = 512; // frames
-const KINDS = ["tx", "ty", "tz", "rx", "ry", "rz", "l", "sx", "sy", "sz"];
 
 /**
  * @typedef {import("../reading/clip.js").Clip & {
@@ -95,21 +95,4 @@ export async function* placesOf({ skeleton, channels, frames, angleUnit }, asset
     if (!place) throw new FileError("bones that stretch (channel l) have no kinematics here");
     yield { first, places: new Float64Array(exports.memory.buffer, place, count * points * 3) };
   }
-}
-
-/** A skeleton and its columns as the numbers that the core takes: core/wasm/kinematics.cpp. */
-function rigOf({ rotation, angleUnit, joints, columns }, unit) {
-  const numbers = [rotation === "fixed", angleUnit === "rad", unit === "rad", joints.length];
-  for (const { parent, offset, axis, axisOrder, channels, ends } of joints) {
-    numbers.push(parent + 1, ...offset, ...axis, ...[...axisOrder].map((x) => "xyz".indexOf(x)));
-    numbers.push(channels.length, ...channels.map((kind) => KINDS.indexOf(kind)));
-    numbers.push(ends.length);
-    for (const end of ends) numbers.push(...end);
-  }
-  numbers.push(columns.length);
-  for (const [joint, kind] of columns) {
-    const known = KINDS.indexOf(kind);
-    numbers.push(known < 0 ? 0 : joint + 1, Math.max(known, 0));
-  }
-  return Float64Array.from(numbers, Number);
 }

@@ -1,6 +1,7 @@
 """The encoder of ``near``: from a goal to steps and chunks."""
 
 from math import inf, log, log2
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,24 +10,44 @@ from mocapress import _core
 from mocapress.codecs.contract import Chunk, Encoded
 from mocapress.codecs.near.goal import Goal, Measure
 from mocapress.codecs.near.header import COARSE, STEPS_PER_OCTAVE, joints_of, pack_header
-from mocapress.codecs.near.turning import Turning, turnings_of
+from mocapress.codecs.near.turning import Turning, is_known, known_turnings, nearest, turnings_of
 from mocapress.errors import VerificationError
 from mocapress.motion import Skeleton, Stream
 
 _MOST_STEP = 4096
 _SCALE_OF_MEAN = 2.5
 """Where the search for a mean begins; 5.5 at coarse ones."""
-_TRIES = 5
+_TRIES = 7
 _NEAR_ENOUGH = 0.01
 _INNER, _OUTER = 1.05, 1.5
 """Means of joints may be so many times that of all; of those without further joints, the latter."""
-_HASTE = 1.5
+_EVEN_ENOUGH = 1.02
+_HASTE = 2.0
 _SAMPLE = 256
 """Frames by which channels are weighed."""
 _COARSE = 4e-3
-"""Of the figure's size: at coarser scales long spans are worth more than early predictions."""
+"""Of the figure's size: at coarser scales long spans are worth more than early predictions; for the
+known figure, of which predictions are known at once, from the second start on."""
+_STARTS = (1.6e-4, 2.2e-3)
+"""Of the figure's size: scales from which the next of the learned starts is taken."""
 _RATE = 0.12
 """What a bit is worth, in squares of the scale."""
+
+
+class _Try(NamedTuple):
+    """A scale and weights of points, and what came of them."""
+
+    off: float
+    """Logarithm of the mean error beside the goal."""
+    excess: float
+    """How many times its share the mean of the worst point is."""
+    scale: float
+    weights: NDArray[np.float64]
+
+    @property
+    def lack(self) -> float:
+        """Give by how much it is not good enough; a mean that is off counts ten times."""
+        return 10 * max(abs(self.off) - _NEAR_ENOUGH, 0) + max(self.excess - _EVEN_ENOUGH, 0)
 
 
 class Encoder:
@@ -48,9 +69,14 @@ class Encoder:
         self.shares = self._shares(skeleton)
         self.joints = joints_of(stream.columns, skeleton)
         self.turnings: list[Turning] = []
+        self.known = False
         if goal.in_space and max_error == inf:
             scale = goal.mean * _SCALE_OF_MEAN
-            self.turnings = turnings_of(self.measure, stream.columns, self.values, scale)
+            self.known = is_known(self.measure, stream.columns, self.values)
+            if self.known:
+                self.turnings = nearest(self.measure, self.values, known_turnings())
+            else:
+                self.turnings = turnings_of(self.measure, stream.columns, self.values, scale)
         self.curves = _core.near_turned_measure(self.measure.core, self.turnings)
         self.exponents = self._levers()
 
@@ -82,6 +108,8 @@ class Encoder:
 
     def _levers(self) -> NDArray[np.int64]:
         """Give what each channel's step is coarser than the scale, (C,) in 64ths of an octave."""
+        if self.known:
+            return np.array(_core.near_figure()[0], np.int64)
         frames = self.values[:: max(1, len(self.values) // _SAMPLE)]
         moderate = np.where(np.abs(frames) < 1e9, frames, 0.0)
         turned = _core.near_turned(self.measure.core, moderate, self.turnings)
@@ -102,14 +130,20 @@ class Encoder:
             shares[:] = [_INNER if j in inner else _OUTER for j in range(len(shares))]
         return shares
 
-    def _weigh(self, errors: NDArray[np.float64]) -> None:
-        """Make errors of joints costlier whose mean is above its share."""
+    def _weigh(self, weights: NDArray[np.float64]) -> None:
+        self.weights = weights
+        self.exponents = self._levers()
+
+    def _excess(self, errors: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Give how many times its share the mean of each point is, (P,)."""
         means = errors.mean(axis=0)
-        above = np.maximum(means / (self.shares * max(means.mean(), 1e-300)), 1.0)
-        self.weights *= above**_HASTE
+        excess: NDArray[np.float64] = means / (self.shares * max(means.mean(), 1e-300))
+        return excess
 
     def _steps(self, scale: float) -> list[int]:
         base = round(log2(scale) * STEPS_PER_OCTAVE)
+        if self.known:
+            return [base + int(each) for each in self.exponents]
         low = -_MOST_STEP + (base + _MOST_STEP) % COARSE
         high = _MOST_STEP - (_MOST_STEP - base) % COARSE
         return [int(each) for each in np.clip(base + self.exponents, low, high)]
@@ -119,10 +153,16 @@ class Encoder:
         relative = scale / self.goal.size
         return 6 if relative < 2e-4 else 4, 64 if relative < 4e-4 else 61
 
+    def _start(self, scale: float) -> int:
+        """Give the learned start that is nearest, from 1 on; 0 where the scale says nothing."""
+        if not self.goal.in_space:
+            return 0
+        return 1 + sum(scale / self.goal.size >= each for each in _STARTS)
+
     def _header(self, scale: float, errors: tuple[float, float]) -> bytes:
         knot, one = self._knot(scale)
         steps = self._steps(scale)
-        early = scale / self.goal.size < _COARSE
+        early = scale / self.goal.size < (_STARTS[0] if self.known else _COARSE)
         return pack_header(
             self.goal.in_space,
             early,
@@ -133,6 +173,8 @@ class Encoder:
             self.joints,
             self.turnings,
             self.measure.uses_radians,
+            self._start(scale),
+            self.known,
         )
 
     def _payload(self, first: int, scale: float, most: float) -> tuple[bytes, NDArray[np.float64]]:
@@ -160,21 +202,22 @@ class Encoder:
 
     def _scale(self) -> float:
         """Find the scale at which the mean error is the goal's."""
-        scale, tried = self.goal.mean * _SCALE_OF_MEAN, list[tuple[float, float]]()
+        scale, tried = self.goal.mean * _SCALE_OF_MEAN, list[_Try]()
         for _ in range(_TRIES):
             errors = self._chunks(scale, inf)[1]
             mean = float(errors.mean())
             if mean <= 0:
                 return scale
-            off = log(mean / self.goal.mean)
-            tried.append((log(scale), off))
-            if abs(off) < _NEAR_ENOUGH:
+            off, excess = log(mean / self.goal.mean), self._excess(errors)
+            tried.append(_Try(off, float(excess.max()), scale, self.weights))
+            if tried[-1].lack <= 0:
                 break
             slope = 1.0
-            if len(tried) > 1 and tried[-2][1] != off:
-                slope = (tried[-1][0] - tried[-2][0]) / (off - tried[-2][1])
-            self._weigh(errors)
+            if len(tried) > 1 and tried[-2].off != off:
+                slope = log(scale / tried[-2].scale) / (off - tried[-2].off)
+            self._weigh(self.weights * np.maximum(excess, 1.0) ** _HASTE)
             move = -off * min(max(slope, 0.4), 2.5)
             scale *= float(np.exp(min(max(move, -2.0), 2.0)))
-        best = min(tried, key=lambda one: abs(one[1]))
-        return float(np.exp(best[0]))
+        best = min(tried, key=lambda one: one.lack)
+        self._weigh(best.weights)
+        return best.scale

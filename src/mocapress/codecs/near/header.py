@@ -54,6 +54,8 @@ def pack_header(
     joints: Joints,
     turnings: Sequence[Turning] = (),
     radians: bool = False,
+    start: int = 0,
+    known: bool = False,
 ) -> bytes:
     """Make the header.
 
@@ -75,15 +77,25 @@ def pack_header(
         The joints whose curves turn in another order than the file.
     radians
         Whether their angles are in radians.
+    start
+        With which of the learned starts coders begin, from 1 on; 0 for none.
+    known
+        Whether the figure is the known one: then steps are its own, beside the first of them.
 
     """
     writer = Writer()
     writer.numbers([_rounded_up(error) for error in errors])
-    writer.integer((1 if in_space else 0) + (0 if early else 2) + (4 if radians else 0))
+    writer.integer(
+        (1 if in_space else 0) + (0 if early else 2) + (4 if radians else 0) + (8 if known else 0)
+    )
     writer.integer(knot - 1)
     writer.integer(first - 1)
     base = steps[0] if steps else 0
-    writer.signed(base)
+    writer.signed(base - _core.near_figure()[0][0] if known else base)
+    writer.integer(start)
+    if known:
+        writer.integer(sum(each[4] << i for i, each in enumerate(turnings)))
+        return bytes(writer.data)
     apart = np.diff(np.array(steps, np.int64), prepend=base) // COARSE
     writer.bytes(_core.near_columns(apart.tolist(), joints.of_column, joints.parents, turnings))
     return bytes(writer.data)
@@ -100,7 +112,7 @@ def unpack_errors(header: bytes) -> tuple[bool, float, float]:
     """
     reader = Reader(header, "header of near")
     mean, largest = reader.numbers(2)
-    return reader.integer(7) % 2 == 1, mean, largest
+    return reader.integer(15) % 2 == 1, mean, largest
 
 
 def _rounded_up(error: float) -> float:

@@ -16,6 +16,20 @@ Turning = tuple[int, int, int, int, int]
 """Of a joint: its first column, the order of the file's columns and of their axes and that of the
 curves' axes, each one of six, and whether the file's angles are the nearest to zero."""
 
+_FIGURE = """
+root.tx/ty/tz/rx/ry/rz lowerback.rx/ry/rz upperback.rx/ry/rz thorax.rx/ry/rz
+lowerneck.rx/ry/rz upperneck.rx/ry/rz head.rx/ry/rz
+rclavicle.ry/rz rhumerus.rx/ry/rz rradius.rx rwrist.ry rhand.rx/rz rfingers.rx rthumb.rx/rz
+lclavicle.ry/rz lhumerus.rx/ry/rz lradius.rx lwrist.ry lhand.rx/rz lfingers.rx lthumb.rx/rz
+rfemur.rx/ry/rz rtibia.rx rfoot.rx/rz rtoes.rx lfemur.rx/ry/rz ltibia.rx lfoot.rx/rz ltoes.rx
+"""
+KNOWN = " ".join(
+    f"{joint}.{kind}"
+    for joint, _, kinds in (part.partition(".") for part in _FIGURE.split())
+    for kind in kinds.split("/")
+)
+"""The columns of the known figure, that of the CMU database."""
+
 _WINDOW, _WINDOWS = 64, 32
 _GAIN = 0.97
 """Another order must cost so much less."""
@@ -35,8 +49,8 @@ def turnings_of(
     for first, *orders in _core.near_turnable(measure.core, named):
         own = values[:, first : first + 3]
         if (np.abs(own) < _MOST).all() and (own != own[0]).any(axis=0).all():
-            places, axes, curves, nearest = orders
-            found.append((first, places, axes, curves, nearest))
+            places, axes, curves, _ = orders
+            found.append((first, places, axes, curves, 0))
     if not found or len(values) < 2:
         return []
     moderate = np.where(np.abs(values) < 1e9, values, 0.0)
@@ -49,7 +63,26 @@ def turnings_of(
         for each, order in zip(found, chosen, strict=True)
         if order >= 0
     ]
-    return _nearest(measure, moderate, turnings)
+    return nearest(measure, moderate, turnings)
+
+
+def known_turnings() -> list[Turning]:
+    """Give the turnings of the known figure."""
+    return [(a, b, c, d, e) for a, b, c, d, e in _core.near_figure()[1]]
+
+
+def is_known(measure: "Measure", columns: Sequence[Column], values: NDArray[np.float64]) -> bool:
+    """Tell whether a clip has the columns of the known figure, which turn as its do."""
+    exponents, turnings = _core.near_figure()
+    if " ".join(column.name for column in columns) != KNOWN or measure.uses_radians:
+        return False
+    named = [(column.joint, column.kind) for column in columns]
+    turnable = [tuple(each[:3]) for each in _core.near_turnable(measure.core, named)]
+    return len(exponents) == len(columns) and all(
+        tuple(each[:3]) in turnable
+        and bool((np.abs(values[:, each[0] : each[0] + 3]) < _MOST).all())
+        for each in turnings
+    )
 
 
 def _windows(values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -83,8 +116,8 @@ def _costs(
     return np.array([bits[each[0] : each[0] + 3].sum() for each in turnable])
 
 
-def _nearest(
-    measure: "Measure", values: NDArray[np.float64], turnings: list[Turning]
+def nearest(
+    measure: "Measure", values: NDArray[np.float64], turnings: Sequence[Turning]
 ) -> list[Turning]:
     """Say of each joint whether its angles are the nearest to zero or to the frame before."""
     zero, before = (

@@ -36,6 +36,19 @@ _LEAST_SCALE = 1e-6
 """Of thresholds: what is not reached then is not reached."""
 
 
+@dataclass(frozen=True, slots=True)
+class _Cut:
+    """A stream in segments, at some scale of the thresholds."""
+
+    rules: Rules
+    database: bytes
+    """Of the stream's own patterns; nothing where a model has them."""
+    projections: Array
+    """Of all nodes, one behind the other."""
+    segments: list[NDArray[np.int64]]
+    """Of each chunk."""
+
+
 @dataclass(slots=True)
 class Job:
     """A stream, and how it is to be coded."""
@@ -135,12 +148,12 @@ class Job:
         """Code the stream; with thresholds for the target ARMS, where there is one."""
         target = self.target
         scale = target / (_USUAL_ARMS * self.size) if target else 1.0
-        own = self._database(scale, model)
-        made, arms = self._coded(scale, model, own)
+        cut = self._cut(scale, model)
+        made, arms = self._coded(cut, model)
         if self.codec.smooth:
             # Of fast motion in short segments, the filter takes more than it mends.
             self.smooth = self.codec.smooth
-            smoothed = self._coded(scale, model, own)
+            smoothed = self._coded(cut, model)
             if smoothed[1] < arms:
                 made, arms = smoothed
             else:
@@ -164,12 +177,12 @@ class Job:
             if not low < guess < high:
                 guess = (low + high) / 2 if high < inf else 2 * low
             scale = guess
-            made, arms = self._coded(scale, model, self._database(scale, model))
+            made, arms = self._coded(self._cut(scale, model), model)
         if best is None and arms <= target:
             best = made
         while best is None:
             scale = min(scale, high) / 2
-            made, arms = self._coded(scale, model, self._database(scale, model))
+            made, arms = self._coded(self._cut(scale, model), model)
             if arms <= target or scale < _LEAST_SCALE:
                 best = made
         return best
@@ -179,19 +192,21 @@ class Job:
         """How many there are."""
         return int(self.values.shape[1])
 
-    def _database(self, scale: float, model: bytes) -> bytes:
-        """Learn the stream's own patterns, where no model has them."""
-        return b"" if model else database_of(self.body, [self.chunks], self.rules(scale))
-
-    def _coded(self, scale: float, model: bytes, own: bytes) -> tuple[Encoded, float]:
-        """Code with scaled thresholds and the stream's own patterns; and give ARMS."""
+    def _cut(self, scale: float, model: bytes) -> "_Cut":
+        """Learn the stream's own patterns where no model has them, and cut it into segments."""
         rules = self.rules(scale)
-        header = self._header(rules, bool(model), 0.0) + own
-        nodes = self._nodes(header, model, rules)
+        own = b"" if model else database_of(self.body, [self.chunks], rules)
+        nodes = self._nodes(self._header(rules, bool(model), 0.0) + own, model, rules)
         projections = np.concatenate([np.empty(0), *(n.projection.ravel() for n, _ in nodes)])
+        segments = [segments_of(nodes, rows, rules) for rows in self.chunks]
+        return _Cut(rules, own, projections, segments)
+
+    def _coded(self, cut: "_Cut", model: bytes) -> tuple[Encoded, float]:
+        """Code segments; and give ARMS."""
+        header = self._header(cut.rules, bool(model), 0.0) + cut.database
         codec = self.codec
-        chunks, total = [], 0.0
-        for first, rows in zip(range(0, len(self.filled), codec.chunk), self.chunks, strict=True):
+        chunks, total, first = [], 0.0, 0
+        for rows, segments in zip(self.chunks, cut.segments, strict=True):
             part = slice(first, first + len(rows))
             coded = _core.patterns_encode(
                 np.ascontiguousarray(self.values[part]),
@@ -199,8 +214,8 @@ class Job:
                 np.ascontiguousarray(self.kept[part]),
                 header,
                 model,
-                segments_of(nodes, rows, rules),
-                projections,
+                segments,
+                cut.projections,
                 codec.max_error,
                 min(codec.protect_error, codec.max_error),
             )
@@ -208,8 +223,10 @@ class Job:
             decoded = np.empty(rows.shape)
             _core.patterns_decode(coded, decoded, header, model)
             total += float(self._errors(part, decoded).sum())
+            first += len(rows)
         arms = total / max(len(self.values), 1)
-        return Encoded(self._header(rules, bool(model), arms) + own, tuple(chunks)), arms
+        named = self._header(cut.rules, bool(model), arms) + cut.database
+        return Encoded(named, tuple(chunks)), arms
 
     def _nodes(self, header: bytes, model: bytes, rules: Rules) -> list[tuple[Node, Array]]:
         told = _core.patterns_nodes(header, model, self.columns)

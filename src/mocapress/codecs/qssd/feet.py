@@ -75,7 +75,7 @@ def _whole(standing: Frames, far: Frames) -> Frames:
     return found
 
 
-def _moving(stream: Stream, skeleton: Skeleton, foot: int) -> tuple[list[int], float]:
+def _moving(stream: Stream, skeleton: Skeleton, foot: int) -> tuple[NDArray[np.intp], float]:
     """Give the columns that move a joint, and how far errors of 1 in all of them do, about."""
     reach = {foot: 0.0}  # from each joint above
     at = foot
@@ -93,4 +93,4 @@ def _moving(stream: Stream, skeleton: Skeleton, foot: int) -> tuple[list[int], f
         if effect > 0:
             columns.append(c)
             squares += effect**2
-    return columns, max(float(np.sqrt(squares)), 1e-300)
+    return np.array(columns, dtype=np.intp), max(float(np.sqrt(squares)), 1e-300)
