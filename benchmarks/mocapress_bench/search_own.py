@@ -31,7 +31,7 @@ def own_search(takes: Sequence[Take], seed: int) -> Index:  # noqa: ARG001
 
     def distances(query: Entry, mirrored: Entry | None = None) -> Array:
         asked = [_numbers(one) for one in (query, mirrored) if one is not None]
-        found = _BEHIND + np.min([np.linalg.norm(kept - own, axis=1) for own in asked], axis=0)
+        found: Array = _BEHIND + np.min([np.linalg.norm(kept - own, axis=1) for own in asked], axis=0)
         for hit in rank(
             query, signatures, lambda i: entries[i].features, MOST + 1, mirrored=mirrored
         ):

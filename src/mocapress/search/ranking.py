@@ -26,9 +26,9 @@ _FRAMES = 256
 """Frames of clips that are aligned; longer ones are thinned."""
 _ABANDON, _ENOUGH = 3.0, 5
 """Alignments are given up, and count as so bad, when so many times as bad as the fifth best."""
-_EXAMPLES = 10
+_EXAMPLES = 15
 """The best stretches, by which others are judged as well."""
-_CLEAR = 0.68
+_CLEAR = 0.73
 """Part of the usual cost, the median over all frames, below which a stretch is an example."""
 _OWN = 0.3
 """Weight of the query itself beside the mean of examples."""
