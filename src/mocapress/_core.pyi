@@ -306,6 +306,21 @@ def exact_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(
     Unless ``whole``, these are only the chunk's first frames.
     """
 
+def exact_coded(header: bytes, columns: int) -> tuple[int, bool]:
+    """
+    Give how many columns chunks hold, and whether their clip was coded with a model.
+
+    ValueError where the bytes are no codec header of a clip of so many columns.
+    """
+
+def exact_decode_chunk(header: bytes, payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], frames: int, level: int, model: bytes) -> None:
+    """
+    Fill ``values``, all columns of a clip, with the first frames of a chunk.
+
+    ``frames`` are those of the chunk, ``model`` a model's payload or nothing.
+    ValueError where header, payload or model are none.
+    """
+
 def exact_network_inputs(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 6), order='C', device='cpu', writable=False)], couplings: Sequence[tuple[int, Sequence[int], Sequence[int], Sequence[float]]], level: int) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None))]:
     """
     Give what the network sees of each number, and what would have been right.
