@@ -25,12 +25,13 @@ demo-runs: $(VENV)/.installed
 	@$(MAKE) --no-print-directory demo >build/demo.log 2>&1 || { cat build/demo.log; exit 1; }
 
 # What takes too long for every test run: 1,000 kills at random moments, then one before every call;
-# 10,000 mutants of each codec and format; a table of 10 GB.
+# 10,000 mutants of each codec and format; texts that tell several lies; a table of 10 GB.
 long: $(VENV)/.built corpus
 	$(BIN)/python tests/campaigns/kills.py --runs 1000 \
 	    $(if $(wildcard corpus/.version),--corpus corpus) --every-call
 	$(BIN)/python tests/campaigns/library_kills.py --runs 300
 	$(BIN)/python tests/campaigns/mutants.py --runs 10000
+	$(BIN)/python tests/campaigns/lies.py --runs 20000
 	$(BIN)/python tests/campaigns/large_inputs.py
 	$(MAKE) sanitize FUZZ_RUNS=1000000
 

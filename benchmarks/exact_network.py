@@ -12,6 +12,9 @@ network and with it. A quarter of an hour on a free core.
 The weights that the format has were learned by an earlier version, in 14,000 steps, when level 7
 had the limbs of order 1, too, and without level 8. The bias of the scale was then raised by 0.85,
 which made the files of the ablation's clips smaller; some of these are of subjects learned from.
+Those that this version writes (torch 2.13, x86-64) are as good: the ablation's clips become 0.03 %
+larger at level 9, 0.07 % smaller at level 8 and 0.04 % smaller at level 7, and every sixth BVH file
+of the corpus together 0.2 % larger at all three.
 """
 
 import argparse

@@ -31,6 +31,7 @@ SCALES = {"fine": (0.0085, 0.012), "middling": (0.085, 0.04, 0.28), "coarse": (1
 """Centimetres; windows take them in turn."""
 CURVES = {"root": 2, "rhumerus": 4, "lhumerus": 4, "rfemur": 1, "lfemur": 1}
 """Orders of the curves' axes: heading outermost; those that are best for most clips."""
+WEIGHTS = {"upperneck": 4.0, "lowerneck": 1.5, "head": 1.3, "lhumerus": 1.2, "rhumerus": 1.2}
 GROUP, SPAN, REACH = 64, 256, 6
 SOURCES = 20
 ASSUMED, ROUNDS = 50, 3
@@ -54,13 +55,14 @@ class Window:
             if order is not None:
                 self.turnings.append((first, places, axes, order, 1))
         self.curves = _core.near_turned_measure(self.measure.core, self.turnings)
+        self.names = [joint.name for joint in clip.skeleton.joints]
         self.joints = joints_of(clip.columns, clip.skeleton)
         self.values = np.ascontiguousarray(clip.values)
         self.turned = _core.near_turned(self.measure.core, self.values, self.turnings)
 
     def levers(self) -> Values:
         """Give the logarithms of the channels' levers, (C,); NaN of one that rests."""
-        weights = np.ones(self.measure.points)
+        weights = np.array([WEIGHTS.get(name, 1.0) for name in self.names])
         squares = _core.near_levers(self.curves, np.ascontiguousarray(self.turned[::8]), weights)
         moves = (self.turned != self.turned[0]).any(axis=0)
         return np.where(moves & (squares > 1e-8), np.log2(np.maximum(squares, 1e-8)) / 2, np.nan)

@@ -5,6 +5,7 @@ import typer
 from mocapress_bench.demo import demo
 from mocapress_bench.diffma_command import diffma
 from mocapress_bench.lossless_command import lossless
+from mocapress_bench.lossy_command import lossy
 from mocapress_bench.mrpa_command import mrpa
 from mocapress_bench.patterns_command import patterns
 from mocapress_bench.qssd_command import qssd
@@ -18,5 +19,16 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (lossless, diffma, mrpa, patterns, qssd, qssd_model, qssd_rivals, search, demo):
+for command in (
+    lossless,
+    lossy,
+    diffma,
+    mrpa,
+    patterns,
+    qssd,
+    qssd_model,
+    qssd_rivals,
+    search,
+    demo,
+):
     app.command()(command)

@@ -28,6 +28,7 @@ def search(
     stretches: Annotated[
         bool, typer.Option(help="Search in long takes, too: joined cuts, and mocap6/.")
     ] = True,
+    clips: Annotated[bool, typer.Option(help="Rank whole clips.")] = True,
     json: Json = None,
     markdown: Markdown = None,
     plots: Annotated[
@@ -51,7 +52,7 @@ def search(
     results: dict[str, Any] = {}
     confused = {}
     parts = []
-    for told, takes in sets.items():
+    for told, takes in sets.items() if clips else ():
         rows = []
         for name, method in methods.items():
             show(f"{told}: {name}")

@@ -9,30 +9,31 @@ from mocapress.search.index import Entry, entry_of
 from mocapress.search.ranking import find, rank
 from mocapress.search.standard import standard_motion
 from mocapress_bench.search_data import RATE, Take
+from mocapress_bench.search_measures import MOST
 from mocapress_bench.search_rivals import Index
 from mocapress_bench.search_stretches import Finder, Hit, Long
 
 Array = NDArray[np.float64]
 
+_BEHIND = 1e6
+"""Above all scores."""
+
 
 def own_search(takes: Sequence[Take], seed: int) -> Index:  # noqa: ARG001
-    """Index by signatures, of which the nearest are compared again.
+    """Index by signatures, of which the nearest are compared again, as in a search for twenty.
 
-    All clips are asked for, so that all are compared again: as many as in a search for the best
-    twenty where there are at most a hundred clips, more otherwise.
+    The clip that asks is found as well. Clips behind those found follow by their signatures.
     """
     motions = [standard_motion(take.clip) for take in takes]
     entries = [entry_of(motion) for motion in motions]
     signatures = [entry.signature for entry in entries]
+    kept = np.array([_numbers(entry) for entry in entries])
 
     def distances(query: Entry, mirrored: Entry | None = None) -> Array:
-        found = np.full(len(entries), np.inf)
+        asked = [_numbers(one) for one in (query, mirrored) if one is not None]
+        found = _BEHIND + np.min([np.linalg.norm(kept - own, axis=1) for own in asked], axis=0)
         for hit in rank(
-            query,
-            signatures,
-            lambda i: entries[i].features,
-            len(entries),
-            mirrored=mirrored,
+            query, signatures, lambda i: entries[i].features, MOST + 1, mirrored=mirrored
         ):
             found[hit.place] = hit.score
         return found

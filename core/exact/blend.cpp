@@ -33,7 +33,7 @@ void judge(const Block* values, const Block* means, const Block* scales, const B
 
 Blends::Blends(std::size_t channels, std::size_t predictors, std::size_t memories)
     : predictors_(predictors), means_(channels, 0), values_(channels, 0), scales_(channels, 1) {
-  for (std::size_t i = 0; i < 17; ++i) shares_[i] = 1 / static_cast<double>(i);
+  for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] = 1 / static_cast<double>(i);
   if (predictors < 2) return;
   for (std::size_t k = 0; k < memories; ++k) {
     memories_.push_back({ParallelChains(channels, predictors, kFadings[k], kRidge),

@@ -47,7 +47,7 @@ class Blends {
   };
 
   std::size_t predictors_;
-  std::array<double, 17> shares_;
+  std::array<double, ParallelChains::kMost + 1> shares_;
   std::vector<Memory> memories_;
   Lanes means_;
   Lanes values_;

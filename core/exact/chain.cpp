@@ -74,7 +74,7 @@ Chain::Chain(std::size_t count, double fading, double ridge)
   triangle_.resize(size);
 }
 
-void Chain::begin() { std::fill_n(predictions_.blocks(), blocks_of(size_), Block{}); }
+void Chain::begin() { std::fill_n(predictions_.data(), blocks_of(size_) * kLanes, 0.0); }
 
 void Chain::see(std::size_t first, std::span<const double> values) {
   if (values.empty()) return;

@@ -10,6 +10,7 @@
 #include "exact/blend.hpp"
 #include "exact/choice.hpp"
 #include "exact/lawful.hpp"
+#include "exact/plan.hpp"
 #include "exact/turns.hpp"
 #include "numbers/line.hpp"
 
@@ -20,9 +21,9 @@ struct Channel {
   NumberLine line;
   double unit;      // from numbers to levels
   double per_unit;  // and back
-  double share;     // of each expert in a mean
-  std::vector<std::size_t> experts;
-  std::vector<std::size_t> slots;  // of the experts
+  double share;     // of each predictor in a mean
+  std::vector<Predictor> predictors;
+  std::vector<std::size_t> slots;  // of the predictors
   std::optional<Turns> turns;
   Lawful* law;  // or none
   Blends* blends = nullptr;

@@ -14,7 +14,6 @@ namespace mocapress::exact {
 namespace {
 
 constexpr double kJump = 12;             // moves; further than that is a jump
-constexpr std::size_t kTogether = 1024;  // columns
 constexpr std::size_t kSoundEvery = 16;  // frames
 
 // Whether most columns that move jump into row `f` many times as far as they move before and after.

@@ -50,10 +50,12 @@ struct Clip {
 Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* learned = nullptr,
              std::vector<float>* seen = nullptr);
 
+inline constexpr std::size_t kTogether = 1024;  // columns of a part, at most
+
 // The inverse. Throws std::invalid_argument when `payload` is not what `encode` makes.
 //
 // Unless `whole`, these are only the chunk's first frames, and what is behind them is not read; of
-// more than 1024 columns all frames must be asked for.
+// more than kTogether columns all frames must be asked for.
 void decode(ByteView payload, double* values, std::size_t frames, const Clip& clip,
             bool whole = true);
 

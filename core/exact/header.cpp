@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint64_t kModel = 1, kOwnCouplings = 2, kLower = 4, kSkeleton = 8;
 enum Role : std::uint8_t { kPredicted, kConstant, kCopy, kNoise, kRoles };
 constexpr int kTurns = 3, kLines = 7, kLineDigits = 32, kExponentStep = 8, kMostExponent = 1000;
-constexpr std::size_t kTogether = 1024, kMostPlaces = 1 << 16, kMostTouching = 12;
+constexpr std::size_t kMostPlaces = 1 << 16, kMostTouching = 12;
 constexpr std::uint64_t kMostSources = 6, kMostTargets = 3;
 constexpr std::uint64_t kJointShapes = 243, kJointOnes = 9, kJointNumbers = 5, kJointBits = 11;
 constexpr std::uint64_t kKinds = 8, kMostLevel = 9;
@@ -299,25 +299,27 @@ Start read_start(ByteView model, const Header& header) {
   return start;
 }
 
-void decode(ByteView payload, double* values, std::size_t frames, std::size_t columns,
-            const Header& header, int level, const Start& start) {
+void decode(ByteView payload, double* values, std::size_t frames, std::size_t wanted,
+            std::size_t columns, const Header& header, int level, const Start& start) {
   const std::size_t coded = header.coded.size();
   // A number costs at least log2(65536 / 65512) bits.
   if (coded * frames > (payload.size() + 64) << 14) fail("the chunk is cut off");
   std::vector<Restoring::Rows> masks;
   const ByteView own = header.beside.take(payload, frames, masks);
-  std::vector<double> rows(frames * coded);
+  const bool whole = wanted == frames || coded > kTogether;
+  const std::size_t count = whole ? frames : wanted;
+  std::vector<double> rows(count * coded);
   if (coded > 0 || !own.empty()) {
     const int used = header.level > 0 ? header.level : level;
-    decode(own, rows.data(), frames, Clip{header.columns, header.couplings, used, start});
+    decode(own, rows.data(), count, Clip{header.columns, header.couplings, used, start}, whole);
   }
-  for (std::size_t f = 0; f < frames; ++f) {
+  for (std::size_t f = 0; f < wanted; ++f) {
     double* const row = values + f * columns;
     for (std::size_t i = 0; i < coded; ++i) row[header.coded[i]] = rows[f * coded + i];
     for (const auto& [c, number] : header.constants) row[c] = number;
     for (const auto& [c, original] : header.copies) row[c] = row[original];
   }
-  header.beside.restore(values, frames, columns, masks);
+  header.beside.restore(values, wanted, columns, masks);
 }
 
 }  // namespace mocapress::exact

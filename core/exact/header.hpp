@@ -30,8 +30,8 @@ Header read_header(ByteView header, std::size_t columns);
 // What a coder of these columns begins with, of the payload of a model.
 Start read_start(ByteView model, const Header& header);
 
-// Fills `frames` x `columns` values from a chunk.
-void decode(ByteView payload, double* values, std::size_t frames, std::size_t columns,
-            const Header& header, int level, const Start& start);
+// Fills the first `wanted` x `columns` values of a chunk of so many frames.
+void decode(ByteView payload, double* values, std::size_t frames, std::size_t wanted,
+            std::size_t columns, const Header& header, int level, const Start& start);
 
 }  // namespace mocapress::exact

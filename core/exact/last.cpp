@@ -77,7 +77,7 @@ LastStage::LastStage(std::size_t channels, const std::vector<std::size_t>& slots
 }
 
 void LastStage::begin() {
-  std::fill_n(sums_.blocks(), sums_.count_blocks(), Block{});
+  std::fill_n(sums_.data(), sums_.count_blocks() * kLanes, 0.0);
   for (std::size_t i = 0; i < kPast; ++i) {
     add_products(weights_[i].blocks(), inputs_[i].blocks(), sums_.blocks(), sums_.count_blocks());
   }

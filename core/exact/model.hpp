@@ -23,6 +23,7 @@
 #include "exact/kinematics.hpp"
 #include "exact/last.hpp"
 #include "exact/lawful.hpp"
+#include "exact/limbs.hpp"
 #include "exact/network.hpp"
 #include "exact/noise.hpp"
 #include "exact/own.hpp"
@@ -52,21 +53,22 @@ class Model {
     const auto known = columns.first(count_);
     if (knows_skeleton(known, clip.level)) kinematics_.emplace(known);
     Plans plan = plans(known, clip.couplings, clip.level);
-    has_own_ = plan.before_own != kNoOwn;
     for (auto& expert : plan.experts) experts_.emplace_back(std::move(expert), count_);
+    for (const auto& limbs : plan.limbs) limbs_.emplace_back(limbs, count_);
+    has_own_ = std::ranges::any_of(
+        plan.order, [](Predictor some) { return some.kind == Predictor::Kind::own; });
     for (std::size_t c = 0; c < count_; ++c) {
       const NumberLine line(columns[c].line, columns[c].digits);
-      std::vector<std::size_t> experts;
-      for (std::size_t e = 0; e <= experts_.size(); ++e) {
-        if (e == plan.before_own) experts.push_back(kOwn);
-        if (e < experts_.size() && experts_[e].predicts(c)) experts.push_back(e);
-      }
+      std::vector<Predictor> predictors;
       std::vector<std::size_t> slots;
-      slots.reserve(experts.size());
-      for (const auto e : experts) slots.push_back(e == kOwn ? kOwnSlot : experts_[e].slot());
+      for (const Predictor some : plan.order) {
+        if (!predicts(some, c)) continue;
+        predictors.push_back(some);
+        slots.push_back(slot(some));
+      }
       const double unit = std::ldexp(1.0, columns[c].exponent);
-      channels_.push_back({line, unit, 1 / unit, 1 / static_cast<double>(experts.size()), experts,
-                           slots, turns_of(columns[c]), nullptr});
+      channels_.push_back({line, unit, 1 / unit, 1 / static_cast<double>(predictors.size()),
+                           predictors, slots, turns_of(columns[c]), nullptr});
     }
     for (const Coupling& coupling : clip.couplings) {
       if (coupling.kind == 0) continue;
@@ -81,8 +83,8 @@ class Model {
     std::ranges::stable_sort(learners_, std::greater(),
                              [](Expert* e) { return e->chain().size(); });
     for (auto* expert : learners_) chains_.push_back(&expert->chain());
-    // Those of the experts, of the own chains, of a law, and the blend.
-    predictions_.resize(experts_.size() + 1 + Lawful::kPredictions + 1);
+    // Those of the predictors, of a law, and the blend.
+    predictions_.resize(plan.order.size() + Lawful::kPredictions + 1);
     begin_with(clip.start);
   }
 
@@ -107,6 +109,7 @@ class Model {
     frames_.next();
     if (first_ || side.chance(kNoCut, cut)) return code_first_frame(side, row);
     for (auto& expert : experts_) expert.begin();
+    for (auto& limbs : limbs_) limbs.begin();
     if (has_own_) own_.begin(frames_);
     spreads_.begin();
     if (last_) last_->begin();
@@ -116,6 +119,7 @@ class Model {
     weights_.clear();
     for (auto* expert : learners_) weights_.push_back(expert->weigh(frames_));
     Chain::learn_all(chains_, weights_);
+    for (auto& limbs : limbs_) limbs.learn(frames_);
     if (has_own_) own_.learn(frames_);
     for (auto& blends : blends_) blends.learn();
     if (last_) last_->learn();
@@ -157,17 +161,17 @@ class Model {
   void gather_blends(std::size_t memories) {
     std::map<std::size_t, std::size_t> counts;
     for (auto& channel : channels_) {
-      const std::size_t usual = channel.experts.size();
+      const std::size_t usual = channel.predictors.size();
       const bool sure = channel.law != nullptr && channel.law->sure();
       channel.from = sure ? usual : 0;
       channel.to = sure ? usual + 1 : usual;
-      channel.blend = counts[predictors(channel)]++;
+      channel.blend = counts[count_predictors(channel)]++;
     }
     blends_.reserve(counts.size());
     for (const auto& [count, channels] : counts) {
       blends_.emplace_back(channels, count, memories);
       for (auto& channel : channels_) {
-        if (predictors(channel) == count) channel.blends = &blends_.back();
+        if (count_predictors(channel) == count) channel.blends = &blends_.back();
       }
     }
   }
@@ -182,8 +186,35 @@ class Model {
     return {found.begin(), found.end()};
   }
 
-  static std::size_t predictors(const Channel& channel) {
-    return channel.experts.size() + (channel.law != nullptr ? Lawful::kPredictions : 0);
+  bool predicts(Predictor some, std::size_t c) const {
+    return some.kind != Predictor::Kind::expert || experts_[some.index].predicts(c);
+  }
+
+  std::size_t slot(Predictor some) const {
+    switch (some.kind) {
+      case Predictor::Kind::expert:
+        return experts_[some.index].slot();
+      case Predictor::Kind::limbs:
+        return limbs_[some.index].slot();
+      default:
+        return kOwnSlot;
+    }
+  }
+
+  // How far a predictor has a channel move since the last frame.
+  double move(Predictor some, std::size_t c) {
+    switch (some.kind) {
+      case Predictor::Kind::expert:
+        return experts_[some.index].predict(c, frames_) - frames_.level(c, 1);
+      case Predictor::Kind::limbs:
+        return limbs_[some.index].predict(c, frames_) - frames_.level(c, 1);
+      default:
+        return own_.move(c);
+    }
+  }
+
+  static std::size_t count_predictors(const Channel& channel) {
+    return channel.predictors.size() + (channel.law != nullptr ? Lawful::kPredictions : 0);
   }
 
   static std::optional<Turns> turns_of(const Column& column) {
@@ -207,12 +238,8 @@ class Model {
   double code_number(Side& side, std::size_t c, double number) {
     Channel& channel = channels_[c];
     if (kinematics_) frames_.set_guess(c, sane(kinematics_->guess(c, frames_)));
-    const std::size_t count = channel.experts.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t expert = channel.experts[i];
-      predictions_[i] = expert == kOwn ? own_.move(c)
-                                       : experts_[expert].predict(c, frames_) - frames_.level(c, 1);
-    }
+    const std::size_t count = channel.predictors.size();
+    for (std::size_t i = 0; i < count; ++i) predictions_[i] = move(channel.predictors[i], c);
     if (channel.law != nullptr) channel.law->predict(c, frames_, predictions_.data() + count);
     double blended = channel.blends->predict(channel.blend, predictions_, channel.from, channel.to);
     const bool unsure = channel.law != nullptr && !channel.law->sure();
@@ -265,7 +292,7 @@ class Model {
     const double loose = channel.law != nullptr ? channel.law->looseness() : 1;
     Beside beside{last_ && channel.law == nullptr ? &*last_ : nullptr, step, loose, 0};
     double sum = 0;
-    for (std::size_t i = 0; i < channel.experts.size(); ++i) {
+    for (std::size_t i = 0; i < channel.predictors.size(); ++i) {
       const double far = predictions_[i] - blended;
       beside.apart[channel.slots[i]] = far;
       sum += std::fabs(far);
@@ -296,7 +323,6 @@ class Model {
   }
 
   static constexpr double kTiny = 1e-9;
-  static constexpr std::size_t kOwn = ~std::size_t{0};  // in place of an expert
 
   double level(std::size_t c, double number) const {
     const double level = number * channels_[c].unit;
@@ -306,6 +332,7 @@ class Model {
   NoiseColumns noise_;
   std::size_t count_;  // columns that are predicted
   std::vector<Expert> experts_;
+  std::vector<Limbs> limbs_;
   OwnChains own_;
   bool has_own_;
   std::vector<Channel> channels_;

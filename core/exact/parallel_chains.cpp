@@ -9,7 +9,7 @@
 namespace mocapress::exact {
 namespace {
 
-constexpr std::size_t kMost = 16;
+constexpr std::size_t kMost = ParallelChains::kMost;
 
 inline double predicted_in_lane(const Block* block, std::size_t size, std::size_t lane) {
   const Block* triangle = block + size;
@@ -74,6 +74,9 @@ void update_blocks(Block* blocks, std::size_t count, std::size_t size, std::size
         break;
       case 5:
         update_block(blocks, 5, fading, *weights);
+        break;
+      case 18:
+        update_block(blocks, 18, fading, *weights);
         break;
       default:
         update_block(blocks, size, fading, *weights);

@@ -11,6 +11,8 @@ namespace mocapress::exact {
 
 class ParallelChains {
  public:
+  static constexpr std::size_t kMost = 18;  // variables
+
   ParallelChains(std::size_t chains, std::size_t size, double fading, double ridge);
 
   // The values of a frame.
@@ -19,6 +21,11 @@ class ParallelChains {
   }
   // Of eight chains: a block for each variable.
   Block* values(std::size_t block) { return blocks_.data() + block * stride_; }
+
+  // Of eight chains: the entries below the diagonal in the column of a variable.
+  const Block* column(std::size_t block, std::size_t variable) const {
+    return blocks_.data() + block * stride_ + size_ + variable * (2 * size_ - variable - 1) / 2;
+  }
 
   // Of the first eight chains the last variable; those of the next eight stand `stride` further on.
   Block* last_values() { return blocks_.data() + size_ - 1; }

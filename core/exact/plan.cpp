@@ -10,14 +10,7 @@ namespace {
 
 // More channels than these are cut into blocks, so that time grows with their number, not its
 // square.
-constexpr std::size_t kMostTogether = 72;
-
-// How many channels are a block, and how many of the first ones belong to each.
-struct Limbs {
-  std::size_t block, root;
-};
-constexpr Limbs kFine = {6, 6};
-constexpr Limbs kCoarse = {8, 0};
+constexpr std::size_t kMostTogether = 160;
 
 Variable past(std::size_t channel, int age) {
   return {Variable::Kind::past,
@@ -31,7 +24,7 @@ Variable one(Variable::Kind kind, std::size_t channel) {
 }
 
 // Every channel by those before it in its block, and by the block's last frame.
-void add_blocks(std::vector<ExpertPlan>& plans, std::size_t channels, double fading) {
+void add_blocks(Plans& plans, std::size_t channels, double fading) {
   const std::size_t blocks = (channels + kMostTogether - 1) / kMostTogether;
   for (std::size_t block = 0; block < blocks; ++block) {
     const std::size_t from = channels * block / blocks;
@@ -43,34 +36,12 @@ void add_blocks(std::vector<ExpertPlan>& plans, std::size_t channels, double fad
     for (std::size_t channel = from; channel < to; ++channel) {
       plan.variables.push_back(one(Variable::Kind::target, channel));
     }
-    plans.push_back(std::move(plan));
-  }
-}
-
-// Every channel by those before it in its block, in the block before, and among the first ones, the
-// root, which moves everything: few enough to be learned within a second.
-void add_limbs(std::vector<ExpertPlan>& plans, std::size_t channels, const Limbs& limbs, int order,
-               double fading) {
-  for (std::size_t from = 0, last = 0; from < channels;) {
-    const std::size_t to = std::min(channels, from + limbs.block);
-    ExpertPlan plan{order == 1 ? kMoveSlot : kLimbSlot, order, fading, {}};
-    for (std::size_t channel = 0; channel < from; ++channel) {
-      if (channel < limbs.root || channel >= last) {
-        plan.variables.push_back(one(Variable::Kind::known, channel));
-      }
-    }
-    for (std::size_t channel = from; channel < to; ++channel) {
-      plan.variables.push_back(one(Variable::Kind::target, channel));
-    }
-    plans.push_back(std::move(plan));
-    last = from;
-    from = to;
+    plans.add(std::move(plan));
   }
 }
 
 // Every channel of the skeleton by its guess, and by guesses and channels before it in its limb.
-void add_guessed(std::vector<ExpertPlan>& plans, std::span<const Column> columns, int history,
-                 double fading) {
+void add_guessed(Plans& plans, std::span<const Column> columns, int history, double fading) {
   const auto limb = [&](std::size_t channel) {
     const int place = columns[channel].place;
     return place < 0 ? -1 : kCmu.channels[static_cast<std::size_t>(place)].limb;
@@ -88,7 +59,7 @@ void add_guessed(std::vector<ExpertPlan>& plans, std::span<const Column> columns
       plan.variables.push_back(one(Variable::Kind::guess, channel));
       plan.variables.push_back(one(Variable::Kind::target, channel));
     }
-    plans.push_back(std::move(plan));
+    plans.add(std::move(plan));
   }
 }
 
@@ -122,22 +93,25 @@ bool knows_skeleton(std::span<const Column> columns, int level) {
 
 Plans plans(std::span<const Column> columns, std::span<const Coupling> couplings, int level) {
   const std::size_t channels = columns.size();
-  std::vector<ExpertPlan> made;
+  Plans made;
+  if (channels == 0) return made;
   if (knows_skeleton(columns, level)) {
     add_guessed(made, columns, 0, 0.9);
     if (level >= 9) add_guessed(made, columns, 2, 0.98);
+  } else if (level == 3 || level == 5) {
+    made.add(LimbsPlan{kLimbSlot, 2, 0.92, 8, 0});
   } else {
-    add_limbs(made, channels, level == 3 || level == 5 ? kCoarse : kFine, 2, 0.92);
+    made.add(LimbsPlan{kLimbSlot, 2, 0.92, 6, 6});
   }
-  const std::size_t before_own = level >= 5 ? made.size() : kNoOwn;
+  if (level >= 5) made.order.push_back({Predictor::Kind::own});
   if (level >= 9) {
-    add_limbs(made, channels, kFine, 1, 0.94);
+    made.add(LimbsPlan{kMoveSlot, 1, 0.94, 6, 6});
     add_blocks(made, channels, 0.998);
   }
   for (const auto& coupling : couplings) {
-    if (coupling.kind == 0) made.push_back(coupled(coupling, 0.9998));
+    if (coupling.kind == 0) made.add(coupled(coupling, 0.9998));
   }
-  return {std::move(made), before_own};
+  return made;
 }
 
 }  // namespace mocapress::exact

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "coding/fail.hpp"
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr std::int64_t kFarthest = std::int64_t{1} << 52;
 constexpr std::int64_t kFloats = std::int64_t{1} << 31;
+constexpr double kMostFloat = std::numeric_limits<float>::max();
 constexpr std::uint64_t kMostStep = std::uint64_t{1} << 33;
 
 // The float32 at a place among all of them.
@@ -49,7 +51,10 @@ std::vector<std::int64_t> read_ascending(Record& record) {
 
 Table read_table(Record& record) {
   Table table;
-  if (record.integer(1) == 1) {
+  const std::uint64_t kind = record.integer(2);
+  table.all = kind == 2;
+  if (table.all) return table;
+  if (kind == 1) {
     table.places = read_ascending(record);
     if (table.places.empty() || table.places.front() < -kFloats || table.places.back() >= kFloats) {
       fail("a list without numbers, or of such as are no floats");
@@ -77,6 +82,7 @@ Table read_table(Record& record) {
 double Table::number(double place) const {
   if (place != place)
     return double_of(static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(place)));
+  if (all) return static_cast<float>(std::clamp(place, -kMostFloat, kMostFloat));
   if (step == 0) {
     if (!(place >= 0 && place < static_cast<double>(places.size())) || place != std::floor(place)) {
       fail("a place outside its list");
@@ -140,7 +146,9 @@ void Restoring::restore(double* values, std::size_t frames, std::size_t columns,
     for (const auto number : {second_[c], first_[c]}) {
       if (number == 0) continue;
       for (const auto& [from, to] : masks[number - 1]) {
-        for (std::size_t f = from; f < to; ++f) values[f * columns + c] = values_[number - 1];
+        for (std::size_t f = from; f < std::min(to, frames); ++f) {
+          values[f * columns + c] = values_[number - 1];
+        }
       }
     }
   }

@@ -12,8 +12,9 @@
 
 namespace mocapress::exact {
 
-// A grid, or a list, of float32 numbers.
+// A grid, or a list, of float32 numbers; or all of them, each at the numbers next to it.
 struct Table {
+  bool all = false;
   double origin = 0, step = 0;       // of a grid; a step of 0: a list
   std::vector<std::int64_t> places;  // where a grid's numbers are some floats away; a list's floats
   std::vector<std::int64_t> away;
@@ -33,7 +34,7 @@ class Restoring {
   // Takes the rows of each mask off a payload; gives what is left of it.
   ByteView take(ByteView payload, std::size_t frames, std::vector<Rows>& masks) const;
 
-  // Puts in place what was not coded, of frames x columns values.
+  // Puts in place what was not coded, of the first frames x columns values of a chunk.
   void restore(double* values, std::size_t frames, std::size_t columns,
                const std::vector<Rows>& masks) const;
 

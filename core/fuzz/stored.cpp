@@ -28,8 +28,8 @@ void decode_exact(ByteView header, ByteView rest, int level, std::vector<double>
   const auto told = exact::read_header(header, columns);
   const std::size_t model = rest.size() / 4;
   const auto start = told.has_model ? exact::read_start(rest.first(model), told) : exact::Start{};
-  exact::decode(told.has_model ? rest.subspan(model) : rest, values.data(), frames, columns, told,
-                level, start);
+  exact::decode(told.has_model ? rest.subspan(model) : rest, values.data(), frames, frames, columns,
+                told, level, start);
 }
 
 void decode_app(ByteView header, ByteView payload, const std::vector<NumberFormat>& formats,

@@ -63,13 +63,13 @@ LineOf printed_line(int decimals, const ColumnView& column) {
 LineOf coarsest_line(const ColumnView& column) {
   const auto decimals = fewest(Line::decimals, 0, kMostDecimals, column);
   const auto significant = fewest(Line::significant, 1, kMostSignificant, column);
-  if (decimals && significant) {
-    const double gain = coarseness({Line::decimals, *decimals}, column) -
+  if (decimals) {
+    const LineOf fixed = printed_line(*decimals, column);
+    if (!significant) return fixed;
+    const double gain = coarseness({fixed.line, fixed.digits}, column) -
                         coarseness({Line::significant, *significant}, column);
-    const bool fixed = gain > kTie;
-    return fixed ? printed_line(*decimals, column) : LineOf{Line::significant, *significant};
+    return gain > kTie ? fixed : LineOf{Line::significant, *significant};
   }
-  if (decimals) return printed_line(*decimals, column);
   if (holds({Line::float32, 0}, column)) return {Line::float32, 0};
   // Nine digits and more may be how float32 was printed.
   if ((!significant || *significant >= 7) && holds({Line::shortest32, 0}, column)) {

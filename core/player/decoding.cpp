@@ -36,7 +36,8 @@ void decode_exact(const Stream& stream, ByteView own, const Chunk& chunk, double
   const auto header = exact::read_header(own, columns);
   if (header.has_model) fail("the clip was coded with a model");
   const auto level = static_cast<int>(parameter(stream, "level", 6, 9));
-  exact::decode(chunk.payload, values, chunk.frames, columns, header, level, exact::Start{});
+  exact::decode(chunk.payload, values, chunk.frames, chunk.frames, columns, header, level,
+                exact::Start{});
 }
 
 void decode_near(const Stream& stream, ByteView own, const Chunk& chunk, double* values) {

@@ -10,6 +10,7 @@
 
 #include "exact/codec.hpp"
 #include "exact/expert.hpp"
+#include "exact/header.hpp"
 #include "exact/joint.hpp"
 #include "exact/kinematics.hpp"
 #include "exact/law.hpp"
@@ -122,6 +123,24 @@ void decode(const nb::bytes& payload, const Output<double, 2>& values, const Exa
   exact::decode(bytes, values.data(), values.shape(0), arguments.clip, whole);
 }
 
+// How many columns chunks hold, and whether a model is needed.
+std::pair<std::size_t, bool> coded(const nb::bytes& header, std::size_t columns) {
+  const auto read = exact::read_header(view(header), columns);
+  return {read.coded.size(), read.has_model};
+}
+
+void decode_chunk(const nb::bytes& header, const nb::bytes& payload,
+                  const Output<double, 2>& values, std::size_t frames, int level,
+                  const nb::bytes& model) {
+  const std::size_t wanted = values.shape(0), columns = values.shape(1);
+  if (wanted > frames) throw std::invalid_argument("more frames than the chunk has");
+  const ByteView bytes = view(payload), learned = view(model), head = view(header);
+  nb::gil_scoped_release unlocked;
+  const auto read = exact::read_header(head, columns);
+  const auto start = learned.empty() ? exact::Start{} : exact::read_start(learned, read);
+  exact::decode(bytes, values.data(), frames, wanted, columns, read, level, start);
+}
+
 // What the network sees of each number, and what would have been right, (n, inputs + 1).
 Given<float, 2> network_inputs(const Input<double, 2>& values, const ExactPlan& plan,
                                const Couplings& couplings, int level) {
@@ -213,6 +232,14 @@ void bind_exact(nb::module_& module) {
              couplings, level, start, nb::arg("whole"),
              "Fill ``values`` from a chunk; ValueError where it is none.\n\n"
              "Unless ``whole``, these are only the chunk's first frames.");
+  module.def("exact_coded", &coded, nb::arg("header"), nb::arg("columns"),
+             "Give how many columns chunks hold, and whether their clip was coded with a model.\n\n"
+             "ValueError where the bytes are no codec header of a clip of so many columns.");
+  module.def("exact_decode_chunk", &decode_chunk, nb::arg("header"), nb::arg("payload"),
+             nb::arg("values").noconvert(), nb::arg("frames"), nb::arg("level"), nb::arg("model"),
+             "Fill ``values``, all columns of a clip, with the first frames of a chunk.\n\n"
+             "``frames`` are those of the chunk, ``model`` a model's payload or nothing.\n"
+             "ValueError where header, payload or model are none.");
   module.def("exact_network_inputs", &network_inputs, values, plan, couplings, level,
              "Give what the network sees of each number, and what would have been right.\n\n"
              "A row for each number that it takes part in, (n, inputs + 1), in units of how far\n"

@@ -39,12 +39,13 @@ float bound_warp(const Features& one, const Features& other, float limit) {
 }
 
 std::pair<Given<float>, Given<std::int32_t>> bound_find_stretches(const Features& wanted,
-                                                                  const Features& motion) {
+                                                                  const Features& motion,
+                                                                  bool damped) {
   check_alike(wanted, motion);
   Matches matches;
   {
     const nb::gil_scoped_release release;
-    matches = find_stretches(frames_of(wanted), frames_of(motion));
+    matches = find_stretches(frames_of(wanted), frames_of(motion), damped);
   }
   return {give(std::move(matches.costs)), give(std::move(matches.starts))};
 }
@@ -57,9 +58,11 @@ void bind_search(nb::module_& module) {
   module.def("warp", &bound_warp, nb::arg("one"), nb::arg("other"), nb::arg("limit"),
              "Mean distance along the best alignment of (F, D) and (G, D), or infinity where it is "
              "above the limit.");
-  module.def("find_stretches", &bound_find_stretches, nb::arg("wanted"), nb::arg("motion"),
-             "Of each frame of the motion (G, D), the best match of (F, D) that ends there: mean "
-             "distances (G,), infinite for none, and first frames (G,).");
+  module.def(
+      "find_stretches", &bound_find_stretches, nb::arg("wanted"), nb::arg("motion"),
+      nb::arg("damped") = false,
+      "Of each frame of the motion (G, D), the best match of (F, D) that ends there: mean "
+      "distances (G,), infinite for none, and first frames (G,). Damped: of distances to 3/4.");
 }
 
 }  // namespace mocapress

@@ -62,7 +62,7 @@ float warp(const Frames& one, const Frames& other, float limit) {
   return cost > limit ? kInfinite : cost;
 }
 
-Matches find_stretches(const Frames& wanted, const Frames& motion) {
+Matches find_stretches(const Frames& wanted, const Frames& motion, bool damped) {
   const std::size_t rows = wanted.count();
   const std::size_t columns = motion.count();
   Matches matches{std::vector<float>(columns, kInfinite), std::vector<std::int32_t>(columns, 0)};
@@ -74,7 +74,11 @@ Matches find_stretches(const Frames& wanted, const Frames& motion) {
     const Matches& above = kept[(i + 2) % 3];
     const Matches& above2 = kept[(i + 1) % 3];
     for (std::size_t j = 0; j < columns; ++j) {
-      const float here = wanted.distance(i, motion, j);
+      float here = wanted.distance(i, motion, j);
+      if (damped) {
+        const float root = std::sqrt(here);
+        here = root * std::sqrt(root);
+      }
       now.costs[j] = i == 0 ? here : kInfinite;
       now.starts[j] = static_cast<std::int32_t>(j);
       const auto take = [&now, j](const Matches& from, std::size_t at, float cost) {

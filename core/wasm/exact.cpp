@@ -10,7 +10,7 @@ void decode(const Request& request, double* values) {
   if (header.has_model && request.model.empty()) fail("the clip was coded with a model");
   const auto start =
       request.model.empty() ? exact::Start{} : exact::read_start(request.model, header);
-  exact::decode(request.payload, values, request.frames, request.columns, header,
+  exact::decode(request.payload, values, request.frames, request.frames, request.columns, header,
                 static_cast<int>(request.parameters[0]), start);
 }
 

@@ -136,7 +136,7 @@ def make_experts(
         experts += [make(2, 1, 0.97, [c], [(c, 3), (c, 2), (c, 1)]) for c in range(n)]
     if level >= 9:
         experts += limbs(3, 1, 0.94, 6, 6)
-        count = -(-n // 72)
+        count = -(-n // 160)
         wide = [range(n * b // count, n * (b + 1) // count) for b in range(count)]
         experts += [make(4, 1, 0.998, block, [(c, 1) for c in block]) for block in wide]
     for sources, targets in polynomials:

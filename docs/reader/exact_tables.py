@@ -1,6 +1,7 @@
 """Masks and tables of ``exact`` (docs/format/exact.md, "Masks and tables")."""
 
 import math
+import struct
 
 from exact_header import palette
 from lines import FLOAT32, Line, bits64, of_bits32
@@ -37,13 +38,26 @@ class List:
         return self.numbers[int(place)]
 
 
+class AllFloats:
+    """Any number is the place of the float nearest to it."""
+
+    def __init__(self, record: Record) -> None:
+        pass
+
+    def number(self, place: float) -> float:
+        """Give the number at a place."""
+        most = 2.0**128 - 2.0**104
+        (number,) = struct.unpack("<f", struct.pack("<f", max(-most, min(place, most))))
+        return float(number)
+
+
 class Told:
     """What stands behind the couplings of a codec header."""
 
     def __init__(self, record: Record, count: int) -> None:
         self.values: list[float] = []
         self.masks: list[tuple[int, int]] = [(0, 0)] * count
-        self.tables: list[Grid | List] = []
+        self.tables: list[Grid | List | AllFloats] = []
         self.table = [0] * count
         if record.at == len(record.data):
             return
@@ -52,7 +66,7 @@ class Told:
             first, second = palette(record, count), palette(record, count)
             self.masks = list(zip(first, second, strict=True))
         for _ in range(record.integer()):
-            self.tables.append((List if record.integer() else Grid)(record))
+            self.tables.append((Grid, List, AllFloats)[record.integer()](record))
         if self.tables:
             self.table = palette(record, count)
 

@@ -306,6 +306,21 @@ def exact_decode(payload: bytes, values: Annotated[NDArray[numpy.float64], dict(
     Unless ``whole``, these are only the chunk's first frames.
     """
 
+def exact_coded(header: bytes, columns: int) -> tuple[int, bool]:
+    """
+    Give how many columns chunks hold, and whether their clip was coded with a model.
+
+    ValueError where the bytes are no codec header of a clip of so many columns.
+    """
+
+def exact_decode_chunk(header: bytes, payload: bytes, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], frames: int, level: int, model: bytes) -> None:
+    """
+    Fill ``values``, all columns of a clip, with the first frames of a chunk.
+
+    ``frames`` are those of the chunk, ``model`` a model's payload or nothing.
+    ValueError where header, payload or model are none.
+    """
+
 def exact_network_inputs(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 6), order='C', device='cpu', writable=False)], couplings: Sequence[tuple[int, Sequence[int], Sequence[int], Sequence[float]]], level: int) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None))]:
     """
     Give what the network sees of each number, and what would have been right.
@@ -519,7 +534,7 @@ def warp(one: Annotated[NDArray[numpy.float32], dict(shape=(None, None), order='
     Mean distance along the best alignment of (F, D) and (G, D), or infinity where it is above the limit.
     """
 
-def find_stretches(wanted: Annotated[NDArray[numpy.float32], dict(shape=(None, None), order='C', device='cpu', writable=False)], motion: Annotated[NDArray[numpy.float32], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> tuple[Annotated[NDArray[numpy.float32], dict(shape=(None,))], Annotated[NDArray[numpy.int32], dict(shape=(None,))]]:
+def find_stretches(wanted: Annotated[NDArray[numpy.float32], dict(shape=(None, None), order='C', device='cpu', writable=False)], motion: Annotated[NDArray[numpy.float32], dict(shape=(None, None), order='C', device='cpu', writable=False)], damped: bool = False) -> tuple[Annotated[NDArray[numpy.float32], dict(shape=(None,))], Annotated[NDArray[numpy.int32], dict(shape=(None,))]]:
     """
-    Of each frame of the motion (G, D), the best match of (F, D) that ends there: mean distances (G,), infinite for none, and first frames (G,).
+    Of each frame of the motion (G, D), the best match of (F, D) that ends there: mean distances (G,), infinite for none, and first frames (G,). Damped: of distances to 3/4.
     """

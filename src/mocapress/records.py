@@ -132,25 +132,27 @@ class Reader:
 
     def raw(self, count: int) -> bytes:
         """Take that many bytes."""
-        if count > self.left:
+        taken = bytes(self.data[self.position : self.position + count])
+        if len(taken) < count:
             raise self.fail(f"{count} bytes announced, {self.left} left")
         self.position += count
-        return bytes(self.data[self.position - count : self.position])
+        return taken
 
     def integer(self, most: int = 2**63 - 1) -> int:
         """Take an unsigned integer of at most ``most``."""
         value = shift = 0
-        while True:
-            if self.position >= len(self.data):
-                raise self.fail("an integer cut off")
-            byte = self.data[self.position]
-            self.position += 1
-            value |= (byte & 0x7F) << shift
-            if byte < 0x80:
-                break
-            shift += 7
-            if shift > most.bit_length():
-                raise self.fail("integer too long")
+        try:
+            # Most take one byte.
+            while (byte := self.data[self.position]) >= 0x80:
+                self.position += 1
+                value |= (byte & 0x7F) << shift
+                shift += 7
+                if shift > most.bit_length():
+                    raise self.fail("integer too long")
+        except IndexError:
+            raise self.fail("an integer cut off") from None
+        self.position += 1
+        value |= byte << shift
         if value > most:
             raise self.fail(f"{value} where at most {most} may stand")
         return value

@@ -10,17 +10,15 @@ from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.codecs.exact import Exact
-from mocapress.codecs.exact.coupling import (
-    Coupling,
-    CouplingKind,
-    arrange,
-    read_couplings,
-    write_couplings,
-)
+from mocapress.codecs.exact.codec import _Coder
+from mocapress.codecs.exact.columns import Told
+from mocapress.codecs.exact.coupling import Coupling, CouplingKind, arrange, write_couplings
 from mocapress.codecs.exact.coupling_search import find_couplings
-from mocapress.errors import CorruptError
+from mocapress.codecs.exact.header import pack_header
+from mocapress.codecs.exact.roles import Role, Roles
+from mocapress.codecs.exact.start import Start
 from mocapress.motion import Clip, Column
-from mocapress.records import Reader, Writer
+from mocapress.records import Writer
 
 Array = NDArray[np.float64]
 
@@ -164,15 +162,29 @@ def any_list() -> st.SearchStrategy[list[Coupling]]:
     return st.lists(any_coupling(12), max_size=5)
 
 
+def roles_with(couplings: list[Coupling]) -> Roles:
+    """Give twelve columns of any numbers, with those couplings that can stand together."""
+    kept: list[Coupling] = []
+    for coupling in arrange(range(12), couplings)[1]:
+        if not any({*coupling.targets} & {*other.targets} for other in kept):
+            kept.append(coupling)
+    kept = arrange(range(12), kept)[1]
+    nothing, doubles = (0,) * 12, ((0, 0),) * 12
+    same = tuple(range(12))
+    return Roles((Role.PREDICTED,) * 12, same, doubles, nothing, nothing, tuple(kept), 0, ())
+
+
 @given(any_list(), st.lists(st.integers(-(2**40), 2**40), min_size=5, max_size=5))
 def test_couplings_travel_in_the_header(couplings: list[Coupling], numbers: list[int]) -> None:
     joint = Coupling(CouplingKind.JOINT, (7, 6), (8,), (21 + 27 * 5 + 486, 40, *numbers))
     adjacent = Coupling(CouplingKind.POLYNOMIAL, (3, 4, 5, 6), (7, 8))
-    writer = Writer()
-    write_couplings(writer, [*couplings, joint, adjacent])
-    reader = Reader(bytes(writer.data), "header")
-    assert read_couplings(reader) == [*couplings, joint, adjacent]
-    reader.end()
+    roles = roles_with([*couplings, joint, adjacent])
+    values = np.random.default_rng(1).normal(0, 20, (12, 12)).cumsum(axis=0)
+    payload, _ = _Coder(roles, 3, Start()).encode(values)
+    rows = np.empty_like(values)
+    header = pack_header(roles, Told(), has_model=False)
+    _core.exact_decode_chunk(header, payload, rows, len(rows), 3, b"")
+    assert rows.tobytes() == values.tobytes()
 
 
 def test_couplings_of_neighbours_take_few_bytes() -> None:
@@ -193,5 +205,8 @@ def test_couplings_of_neighbours_take_few_bytes() -> None:
     ],
 )
 def test_forged_couplings_are_refused(data: bytes) -> None:
-    with pytest.raises(CorruptError):
-        read_couplings(Reader(data, "header"))
+    header = pack_header(roles_with([]), Told(), has_model=False)
+    assert header[-1:] == b"\0"
+    assert _core.exact_coded(header, 12) == (12, False)
+    with pytest.raises(ValueError, match=r"coupling|record|shape|cut off"):
+        _core.exact_coded(header[:-1] + data, 12)

@@ -191,6 +191,13 @@ def test_printed_floats_are_coded_as_floats(line: int, unit: float) -> None:
     assert coded(clip) < coded(plain) - FRAMES / 2
 
 
+def test_printed_floats_of_one_decade_are_coded_as_floats() -> None:
+    numbers = 500 + np.pi * free()
+    clip, plain = clip_of(printed(numbers, 1.0)), clip_of(np.round(numbers, 6))
+    assert set(roles_of(clip).lines) == {(PRINTED32, 6)}
+    assert coded(clip) < coded(plain) - FRAMES / 2 * numbers.shape[1]
+
+
 def test_what_is_on_no_line_of_printed_floats_comes_back_among_them() -> None:
     values = printed(free() * 3, 1.0)
     values[::70] = np.round(values[::70] + 1e-6, 6)

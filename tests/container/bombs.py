@@ -420,3 +420,23 @@ def model_of_columns() -> bytes:
         pairs[:, place] = (index >> 7 * place) & 127 | 128
     pairs[:, 3] = (index >> 21) & 127
     return model_bytes(Model("exact", record(0, count) + pairs.tobytes()))
+
+
+def diffma_text(channels: str, tables: str) -> bytes:
+    """Give DiffMA JSON with these lists, as they are written."""
+    params = '{"bits":6,"window":64,"bound":2}'
+    records = f'{{"b":["2222"],"t":{tables}}}'
+    return f'{{"channels":{channels},"records":{records},"params":{params}}}'.encode()
+
+
+@bomb
+def densest_names_of_channels() -> bytes:
+    """As many names as there may be in so many bytes, each an object in memory."""
+    names = ",".join(['"ab"'] * 1_700_000)
+    return diffma_text(f"[{names}]".ljust(12 * 2**20), "[[1]]")
+
+
+@bomb
+def densest_tables_of_channels() -> bytes:
+    tables = ",".join(["[1]"] * 580_000)
+    return diffma_text('["a"]', f"[{tables}]".ljust(12 * 2**20))

@@ -7,7 +7,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from bombs import BOMBS
+from bombs import BOMBS, of_codec_header, polynomials
+from linear import Work, is_linear
 from running import mocapress
 
 import mocapress as mp
@@ -128,3 +129,20 @@ def test_a_limit_bounds_the_numbers_of_a_json() -> None:
         work(text, limit=4 * numbers)
         with pytest.raises(mp.UnsupportedError, match="limit"):
             work(text, limit=numbers - 1)
+
+
+def test_couplings_take_time_in_proportion_to_their_number() -> None:
+    """Of each kind: within one part of the columns, and one behind the other."""
+
+    def side_by_side(n: int) -> Work:
+        made = [tuple(range(9 * i, 9 * i + 9)) for i in range(n)]
+        blob = of_codec_header(9 * n, 1, polynomials(9 * n, made), bytes(64))
+        return lambda: mp.load(blob)
+
+    def of_equal_sources(n: int) -> Work:
+        made = [(*range(6), 6 + 3 * i, 7 + 3 * i, 8 + 3 * i) for i in range(n)]
+        blob = of_codec_header(6 + 3 * n, 1, polynomials(6 + 3 * n, made), bytes(64))
+        return lambda: mp.load(blob)
+
+    assert is_linear(side_by_side, 200)
+    assert is_linear(of_equal_sources, 40)

@@ -43,3 +43,8 @@ def every_kind() -> bytes:
 def by_columns() -> bytes:
     """Give an array whose columns stand one after the other."""
     return npy(np.asfortranarray(wave(columns=3)))
+
+
+def stored_decimals() -> bytes:
+    """Give an array of decimals that were stored as float32."""
+    return npy(wave(columns=3).astype(np.float32))

@@ -160,6 +160,7 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_odd.csv": (table_files.odd_table(), "exact:level=2,chunk=60", {}),
     "v1_kinds.npz": (array_files.every_kind(), "exact:level=2,chunk=60", {}),
     "v1_columns.npy": (array_files.by_columns(), "exact:level=3,chunk=60", {}),
+    "v1_decimals.npy": (array_files.stored_decimals(), "exact:level=2,chunk=60", {}),
     "v1_mips_integers.c3d": (c3d_files.whole_numbers(c3d_files.MIPS), "exact:level=3,chunk=60", {}),
 }
 # NAME.mcz was coded with the model NAME.mcm, which was learned from the file itself.

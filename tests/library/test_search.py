@@ -286,6 +286,20 @@ def test_clips_without_an_index_get_one_when_they_are_searched(
     assert (facts["searchable"], facts["index_bytes"]) == (2, sum(sizes))
 
 
+def test_a_library_made_without_an_index_stays_so_when_it_is_searched(
+    samples: Path, tmp_path: Path
+) -> None:
+    path = tmp_path / "lib.mocapdb"
+    assert mocapress("library", "create", path, "--no-index").exit_code == 0
+    assert mocapress("library", "add", path, samples / BANK).exit_code == 0
+    done = mocapress("search", path, samples / BANK)
+    assert "1 clips have no index for search, and the library was made without one" in done.stderr
+    assert BANK in done.stdout
+    with mp.open_library(path, "a") as library:
+        assert library.search(library[BANK], within=True, frames=slice(0, 60))
+        assert library.lacking() == 1
+
+
 def test_a_search_beside_another_that_writes_makes_its_index_for_itself(
     samples: Path, tmp_path: Path, bank: mp.Clip
 ) -> None:
@@ -321,9 +335,9 @@ def test_a_library_of_version_2_can_be_searched(file: Path, bank: mp.Clip) -> No
     with mp.open_library(file) as library:
         expected = library.search(bank)
     with sqlite3.connect(file) as connection:
-        for table in ("signatures", "features"):
+        for table in ("signatures", "features", "settings"):
             connection.execute(f"DROP TABLE {table}")
-        connection.execute("DELETE FROM migrations WHERE version = 3")
+        connection.execute("DELETE FROM migrations WHERE version > 2")
         connection.execute("PRAGMA user_version = 2")
     connection.close()
     with mp.open_library(file) as library:

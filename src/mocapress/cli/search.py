@@ -112,18 +112,24 @@ def search(
 def _searchable(file: str, *, debug: bool, models: "Sequence[Place]") -> "Iterator[Library]":
     """Open a library; the index that clips lack is made now, and kept where that is possible."""
     from mocapress.cli.report import say
+    from mocapress.library.index import is_wanted
     from mocapress.library.library import is_sharded
 
     with opened(file, debug=debug, models=models) as library:
         missing = library.lacking()
         place = Path(library.location)
-        kept = not is_sharded(library.location) and all(
-            os.access(there, os.W_OK) for there in (place, place.parent)
+        with library.db.reading() as connection:
+            wanted = is_wanted(connection)
+        kept = (
+            wanted
+            and not is_sharded(library.location)
+            and all(os.access(there, os.W_OK) for there in (place, place.parent))
         )
         if missing and not kept:
             say(
-                f"{file}: {missing} clips have no index for search, and the library cannot be "
-                "changed here: it is made for this search alone"
+                f"{file}: {missing} clips have no index for search, and the library "
+                f"{'cannot be changed here' if wanted else 'was made without one'}: "
+                "it is made for this search alone"
             )
         if not missing or not kept:
             yield library

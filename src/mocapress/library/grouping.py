@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.library.clips import StoredClip, by_id
 from mocapress.library.searching import Searchable, entry_of_place
-from mocapress.search.ranking import find
+from mocapress.search.ranking import likeness
 from mocapress.search.standard import ASSUMED_RATE
 
 if TYPE_CHECKING:
@@ -136,5 +136,4 @@ def _same(
     if seconds[short] < _COVERED * seconds[long]:
         return False
     wanted, other = (entry_of_place(library, searchable, place) for place in (short, long))
-    hits = find(wanted, [(long, other.features)], 1)
-    return bool(hits) and hits[0].score <= alike
+    return likeness(wanted, other) <= alike

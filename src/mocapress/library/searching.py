@@ -89,7 +89,8 @@ def completed(library: "Finding") -> Searchable:
     with library.db.reading() as connection:
         kept = index.signatures(connection)
     found, made = dict(kept), dict[int, Entry]()
-    keeping = library.db.writable
+    with library.db.reading() as connection:
+        keeping = library.db.writable and index.is_wanted(connection)
     for clip, signature in kept:
         if signature is not None:
             continue
@@ -237,7 +238,7 @@ def _best(hits: Iterable[Hit]) -> list[Hit]:
     best = []
     for hit in sorted(hits, key=lambda hit: hit.score):
         others = kept.setdefault(hit.place, [])
-        if not any(_share(hit, other) > _SHARED for other in others):
+        if not any(_share(hit, other) > _SHARED + 1e-6 for other in others):
             others.append(hit)
             best.append(hit)
     return best

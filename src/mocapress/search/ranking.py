@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from mocapress import _core
 from mocapress.search.features import EVERY, Features, read_record
 from mocapress.search.index import Entry
-from mocapress.search.signatures import BYTES
+from mocapress.search.signatures import BYTES, projected
 from mocapress.search.standard import RATE
 
 Array = NDArray[np.float64]
@@ -26,6 +26,15 @@ _FRAMES = 256
 """Frames of clips that are aligned; longer ones are thinned."""
 _ABANDON, _ENOUGH = 3.0, 5
 """Alignments are given up, and count as so bad, when so many times as bad as the fifth best."""
+_EXAMPLES = 10
+"""The best stretches, by which others are judged as well."""
+_CLEAR = 0.68
+"""Part of the usual cost, the median over all frames, below which a stretch is an example."""
+_OWN = 0.3
+"""Weight of the query itself beside the mean of examples."""
+_SIGNED_STRETCH = 1100.0
+"""Distance of signatures that counts as much as a cost of 1."""
+_NONE = np.empty(0, np.float32)
 _OVERLAP = 0.5
 """Share of the shorter of two stretches by which they may overlap."""
 
@@ -99,9 +108,11 @@ def rank(
 
 
 def find(query: Entry, features: Iterable[tuple[int, bytes]], top: int = 20) -> list[Hit]:
-    """Find the stretches of clips that are most like a query, by subsequence alignment of all.
+    """Find the stretches of clips that are most like a query.
 
-    A stretch may be half to twice as long as the query. Those of one clip overlap by half at most.
+    All clips are aligned with the query, and with those of the best hits that are far better than
+    what else there is. The best stretches are compared by signatures, too. A stretch may be half to
+    twice as long as the query. Those of one clip overlap by half at most.
 
     Parameters
     ----------
@@ -119,16 +130,91 @@ def find(query: Entry, features: Iterable[tuple[int, bytes]], top: int = 20) -> 
 
     """
     wanted = read_record(query.features)
-    hits: list[Hit] = []
-    for place, data in features:
-        costs, starts = _core.find_stretches(wanted, read_record(data))
-        hits += [
-            Hit(place, float(costs[end]), first * EVERY / RATE, (end + 1) * EVERY / RATE)
-            for first, end in _apart(costs, starts, top)
+    records = [*features]
+    matches = [_core.find_stretches(wanted, read_record(data), damped=True) for _, data in records]
+    costs = [own for own, _ in matches]
+    known = np.concatenate([own[np.isfinite(own)] for own in [*costs, _NONE]])
+    if not len(known):
+        return []
+    clear = _CLEAR * float(np.median(known))
+    first = [hit for hit in _stretches(matches, _EXAMPLES) if hit.cost <= clear]
+    if first:
+        examples = [
+            _as_long(read_record(records[hit.record][1]), hit, len(wanted)) for hit in first
         ]
-        if len(hits) > 16 * top:
-            hits = sorted(hits, key=lambda hit: hit.score)[:top]
-    return sorted(hits, key=lambda hit: hit.score)[:top]
+        for number, (_, data) in enumerate(records):
+            motion = read_record(data)
+            others = [_core.find_stretches(one, motion, damped=True)[0] for one in examples]
+            costs[number] = _OWN * costs[number] + (1 - _OWN) * np.mean(others, axis=0)
+    again = [(own, starts) for own, (_, starts) in zip(costs, matches, strict=True)]
+    hits = _stretches(again, max(_CANDIDATES, top))
+    scores = _scores(wanted, records, hits)
+    order = np.argsort(scores, kind="stable")[:top]
+    seconds = EVERY / RATE
+    return [
+        Hit(
+            records[hits[i].record][0],
+            float(scores[i]),
+            hits[i].first * seconds,
+            (hits[i].last + 1) * seconds,
+        )
+        for i in order
+    ]
+
+
+def likeness(query: Entry, other: Entry) -> float:
+    """Give the mean distance of a query's frames from the stretch of another that is most alike.
+
+    Infinite where the other is less than half as long.
+    """
+    costs, _ = _core.find_stretches(read_record(query.features), read_record(other.features))
+    return float(costs.min(initial=np.inf))
+
+
+class _Stretch(NamedTuple):
+    """A stretch of a record."""
+
+    cost: float
+    record: int
+    first: int
+    last: int
+
+
+def _stretches(matches: Sequence[tuple[Features, NDArray[np.int32]]], top: int) -> list[_Stretch]:
+    """Give the best stretches of all records, the best first."""
+    found = [
+        _Stretch(float(costs[last]), record, first, last)
+        for record, (costs, starts) in enumerate(matches)
+        for first, last in _apart(costs, starts, top)
+    ]
+    return sorted(found)[:top]
+
+
+def _as_long(motion: Features, hit: _Stretch, frames: int) -> Features:
+    """Give a stretch with so many frames."""
+    places = np.rint(np.linspace(hit.first, hit.last, frames)).astype(np.intp)
+    return np.ascontiguousarray(motion[places])
+
+
+def _scores(wanted: Features, records: Sequence[tuple[int, bytes]], hits: list[_Stretch]) -> Array:
+    """Score stretches by cost, by their signatures' distance from the query's and from the best's.
+
+    The signatures are those of 15 frames a second, which no library keeps.
+    """
+    if not hits:
+        return np.zeros(0)
+    read: dict[int, Features] = {}
+    made = np.empty((len(hits), BYTES))
+    for number, hit in enumerate(hits):
+        if hit.record not in read:
+            read[hit.record] = read_record(records[hit.record][1])
+        made[number] = projected(read[hit.record][hit.first : hit.last + 1].astype(np.float64))
+    own = np.linalg.norm(made - projected(wanted.astype(np.float64)), axis=1)
+    scores = np.array([hit.cost for hit in hits]) + own / _SIGNED_STRETCH
+    best = np.argsort(scores, kind="stable")[:_EXAMPLES]
+    theirs = [np.linalg.norm(made - made[i], axis=1) for i in best]
+    added: Array = scores + np.mean(theirs, axis=0) / _SIGNED_STRETCH
+    return added
 
 
 def _apart(costs: Features, starts: NDArray[np.int32], top: int) -> list[tuple[int, int]]:

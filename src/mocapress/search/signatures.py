@@ -45,8 +45,13 @@ class Projection(NamedTuple):
 
 def signature(motion: StandardMotion) -> Signature:
     """Give the signature of a clip: (64,) int8."""
-    projected = (description(features(motion)) - projection().mean) @ projection().matrix
-    made: Signature = np.round(projected / projection().step).clip(-127, 127).astype(np.int8)
+    made: Signature = np.round(projected(features(motion))).clip(-127, 127).astype(np.int8)
+    return made
+
+
+def projected(of: Array) -> Array:
+    """Give a signature of features (F, 35) before it is rounded: (64,)."""
+    made: Array = (description(of) - projection().mean) @ projection().matrix / projection().step
     return made
 
 

@@ -113,6 +113,10 @@ class Document:
         return params
 
 
+_MOST_CHANNELS = 2**18
+"""As in the head of a ``.mcz``."""
+
+
 def read_document(data: bytes) -> Document:
     """Read a document.
 
@@ -124,6 +128,8 @@ def read_document(data: bytes) -> Document:
     """
     root = json_types.read(data)
     channels = len(root.channels)
+    if channels > _MOST_CHANNELS:
+        fail("$.channels", f"at most {_MOST_CHANNELS} names", str(channels))
     coding, plans = _read_params(root.params, channels)
     records, frames = _read_records(root.records, "$.records", channels, coding.bits, None)
     levels = []

@@ -21,8 +21,8 @@ from mocapress.codecs.contract import (
 )
 from mocapress.codecs.exact.columns import Told
 from mocapress.codecs.exact.coupling_search import find_couplings
-from mocapress.codecs.exact.header import pack_header, unpack_header
-from mocapress.codecs.exact.roles import Role, Roles, find_roles
+from mocapress.codecs.exact.header import pack_header
+from mocapress.codecs.exact.roles import Roles, find_roles
 from mocapress.codecs.exact.skeletons import NONE, OWN_COUPLINGS, assumed, skeleton_of
 from mocapress.codecs.exact.start import Learned, Start, model_of, start_of
 from mocapress.codecs.threads import each
@@ -42,8 +42,6 @@ _SURE = 0.997
 """How much smaller a lower level must be where there are more frames than are tried."""
 _TELLING = 2
 """Laws of a skeleton that tell that columns without names are its channels."""
-_TOGETHER = 1024
-"""Clips of more columns are coded in parts of so many, one behind the other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,26 +133,28 @@ class Exact(Codec):
         """
         if not chunks:
             return np.empty((0, len(columns)))
-        roles, told, has_model, level = unpack_header(header, len(columns))
+        try:
+            coded, has_model = _core.exact_coded(header, len(columns))
+        except ValueError as error:
+            raise CorruptError(f"exact header: {error}") from error
         if has_model and model is None:
             raise CorruptError("exact header: the clip was coded with a model")
-        coder = _Coder(roles, level or self.level, start_of(model))
+        start_of(model)
+        learned = b"" if model is None else model.payload
         for chunk in chunks:
-            self._check_size(chunk, len(coder.columns))
+            self._check_size(chunk, coded)
         frames = sum(chunk.frames for chunk in chunks)
         values = np.empty((frames if stop is None else min(stop, frames), len(columns)))
-        values[:, roles.of(Role.CONSTANT)] = roles.constants
-        copies = roles.of(Role.COPY)
-        originals = [roles.originals[column] for column in copies]
 
         def fill(place: tuple[int, Chunk]) -> None:
             first, chunk = place
             rows = values[first : first + chunk.frames]
-            where = f"exact chunk from frame {chunk.first}"
-            payload, masks = told.unpack(chunk.payload, chunk.frames, where)
-            rows[:, coder.columns] = coder.decode(replace(chunk, payload=payload), len(rows))
-            rows[:, copies] = rows[:, originals]
-            told.restore(rows, masks)
+            try:
+                _core.exact_decode_chunk(
+                    header, bytes(chunk.payload), rows, chunk.frames, self.level, learned
+                )
+            except ValueError as error:
+                raise CorruptError(f"exact chunk from frame {chunk.first}: {error}") from error
 
         firsts = accumulate((chunk.frames for chunk in chunks[:-1]), initial=0)
         places = zip(firsts, chunks, strict=True)
@@ -228,17 +228,3 @@ class _Coder:
             return b"", ([], [])
         own = np.ascontiguousarray(rows[:, self.columns])
         return _core.exact_encode(own, self._plan, self._couplings, self._level, self._start, learn)
-
-    def decode(self, chunk: Chunk, frames: int) -> NDArray[np.float64]:
-        """Decode the first frames of a chunk: its own columns, (frames, n)."""
-        if not self.columns and not chunk.payload:
-            return np.empty((frames, 0))
-        whole = frames == chunk.frames or len(self.columns) > _TOGETHER
-        rows = np.empty((chunk.frames if whole else frames, len(self.columns)))
-        try:
-            _core.exact_decode(
-                chunk.payload, rows, self._plan, self._couplings, self._level, self._start, whole
-            )
-        except ValueError as error:
-            raise CorruptError(f"exact chunk from frame {chunk.first}: {error}") from error
-        return rows[:frames]

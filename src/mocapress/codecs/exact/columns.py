@@ -7,18 +7,10 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.codecs.exact.gaps import Mask, Masks, read_runs, write_runs
-from mocapress.codecs.exact.tables import (
-    Table,
-    Tables,
-    coded,
-    decoded,
-    has_floats,
-    read_tables,
-    write_tables,
-)
-from mocapress.codecs.palette import read_palette, write_palette
-from mocapress.records import Reader, Writer
+from mocapress.codecs.exact.gaps import Mask, Masks, write_runs
+from mocapress.codecs.exact.tables import Table, Tables, coded, has_floats, write_tables
+from mocapress.codecs.palette import write_palette
+from mocapress.records import Writer
 
 Values = NDArray[np.float64]
 
@@ -71,28 +63,6 @@ class Told:
             write_tables(writer, self.tables)
             write_palette(writer, self.table_of)
 
-    @classmethod
-    def read(cls, reader: Reader, columns: int) -> Self:
-        """Take what is left of a header.
-
-        Raises
-        ------
-        CorruptError
-            When it is not what ``write`` writes.
-
-        """
-        if not reader.left:
-            return cls()
-        values = [reader.double() for _ in range(reader.integer(2 * columns))]
-        masks_of: list[tuple[int, int]] = []
-        if values:
-            first, second = (read_palette(reader, columns, len(values)) for _ in range(2))
-            masks_of = list(zip(first, second, strict=True))
-        count = reader.integer(columns)
-        tables = read_tables(reader, count)
-        table_of = read_palette(reader, columns, count) if count else []
-        return cls(values, masks_of, tables, table_of)
-
     def pack(self, payload: bytes, masks: Sequence[Mask]) -> bytes:
         """Give a chunk's payload with the runs of its masks before it."""
         if not self.values:
@@ -101,28 +71,3 @@ class Told:
         for mask in masks:
             write_runs(writer, mask)
         return bytes(writer.data) + payload
-
-    def unpack(self, payload: bytes, frames: int, where: str) -> tuple[bytes, list[Mask]]:
-        """Take the runs of masks off a chunk's payload."""
-        if not self.values:
-            return payload, []
-        reader = Reader(payload, where)
-        masks = [read_runs(reader, frames) for _ in self.values]
-        return reader.raw(reader.left), masks
-
-    def restore(self, rows: Values, masks: Sequence[Mask]) -> None:
-        """Put the numbers of tables, and gaps, in the place of what was coded, (F, C).
-
-        Raises
-        ------
-        CorruptError
-            When a place is not in its table.
-
-        """
-        for column, number in enumerate(self.table_of):
-            if number:
-                own = np.ascontiguousarray(rows[:, column])
-                rows[:, column] = decoded(self.tables[number - 1], own)
-        for column, (gap, zero) in enumerate(self.masks_of):
-            for number in filter(None, (zero, gap)):
-                rows[masks[number - 1][: len(rows)], column] = self.values[number - 1]

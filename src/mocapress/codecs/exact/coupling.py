@@ -5,9 +5,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
-from mocapress.records import Reader, Writer
+from mocapress.records import Writer
 
-_JOINT_AXES, _JOINT_TURNS, _JOINT_ONES = 27, 9, 9
+_JOINT_AXES, _JOINT_TURNS = 27, 9
 _JOINT_SHAPES = _JOINT_AXES * _JOINT_TURNS
 _JOINT_BITS = range(0, 41, 4)
 _JOINT_NUMBERS = 5
@@ -17,8 +17,6 @@ _MOST_PLACES = 1 << 16
 """It has couplings of so many columns."""
 _MOST_TOUCHING = 12
 """Couplings that one column may be in; bounds the work that a forged header asks for."""
-_MOST_SOURCES, _MOST_TARGETS = 6, 3
-"""Of a polynomial."""
 
 
 class CouplingKind(IntEnum):
@@ -149,40 +147,6 @@ def write_couplings(writer: Writer, couplings: Sequence[Coupling]) -> None:
             writer.integer(column)
 
 
-def read_couplings(reader: Reader) -> list[Coupling]:
-    """Take couplings; whether there are such columns is not checked.
-
-    Raises
-    ------
-    CorruptError
-        When there are no such couplings.
-
-    """
-    couplings = []
-    for _ in range(reader.count(2)):
-        code = reader.integer(2 * len(CouplingKind) - 1)
-        kind = CouplingKind(code // 2)
-        parameters: tuple[int, ...] = ()
-        if kind is CouplingKind.POLYNOMIAL:
-            sources, targets = reader.integer(_MOST_SOURCES), reader.integer(_MOST_TARGETS)
-        elif kind is CouplingKind.JOINT:
-            sources, targets, parameters = _read_joint(reader)
-        else:
-            sources, targets = (len(side) for side in _LAWS[kind])
-        columns = tuple(range(sources + targets))
-        made = Coupling(kind, columns[:sources], columns[sources:], parameters)
-        offsets = _offsets(made)
-        if code % 2:
-            columns = tuple(reader.integer() for _ in columns)
-        else:
-            first = reader.integer()
-            columns = tuple(first + offset for offset in offsets)
-        if not sources or not targets or len({*columns}) < len(columns):
-            raise reader.fail("a coupling of impossible shape")
-        couplings.append(Coupling(kind, columns[:sources], columns[sources:], parameters))
-    return couplings
-
-
 def _offsets(coupling: Coupling) -> tuple[int, ...]:
     """Give the columns of a coupling of this shape whose joints stand one behind the other."""
     if coupling.kind is CouplingKind.POLYNOMIAL:
@@ -201,13 +165,3 @@ def _write_joint(writer: Writer, coupling: Coupling) -> None:
     writer.integer(told * 2**_JOINT_NUMBERS + given)
     for multiple in filter(None, multiples):
         writer.signed(multiple)
-
-
-def _read_joint(reader: Reader) -> tuple[int, int, tuple[int, ...]]:
-    """Take what is special of a joint: the numbers of sources and targets, and the parameters."""
-    most = 2 * _JOINT_ONES * _JOINT_SHAPES * len(_JOINT_BITS) * 2**_JOINT_NUMBERS - 1
-    told, given = divmod(reader.integer(most), 2**_JOINT_NUMBERS)
-    told, bits = divmod(told, len(_JOINT_BITS))
-    shape, sources = divmod(told, 2)
-    multiples = (reader.signed() if given >> i & 1 else 0 for i in range(_JOINT_NUMBERS))
-    return sources + 1, 1, (shape, _JOINT_BITS[bits], *multiples)

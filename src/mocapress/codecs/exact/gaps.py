@@ -10,7 +10,7 @@ import struct
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.records import Reader, Writer
+from mocapress.records import Writer
 
 Values = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -74,24 +74,3 @@ def write_runs(writer: Writer, mask: Mask) -> None:
     writer.integer(len(ends))
     for length in np.diff(ends, prepend=0).tolist():
         writer.integer(length)
-
-
-def read_runs(reader: Reader, frames: int) -> Mask:
-    """Take the runs of a mask, (frames,).
-
-    Raises
-    ------
-    CorruptError
-        When there are more rows than that.
-
-    """
-    mask = np.zeros(frames, np.bool_)
-    row, inside = 0, False
-    for _ in range(reader.integer(min(frames, reader.left))):
-        start, row = row, row + reader.integer(frames)
-        if row >= frames:
-            raise reader.fail("gaps beyond the last row")
-        mask[start:row] = inside
-        inside = not inside
-    mask[row:] = inside
-    return mask

@@ -2,7 +2,8 @@
 
 A grid is what a converter or a file of integers leaves when its whole numbers are stored as
 float32: origin + step * k, up to some roundings. A list is any other set of few numbers. Columns of
-such numbers are coded as places in their table.
+such numbers are coded as places in their table. Decimals that were stored as float32 have all
+float32 for their table, each at the decimals next to it, and are coded as decimals.
 """
 
 from collections.abc import Callable, Iterable
@@ -12,25 +13,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.codecs.exact.grids import find_grid
-from mocapress.errors import CorruptError
-from mocapress.records import Reader, Writer
+from mocapress.codecs.exact.rounding import Rounding, find_rounding
+from mocapress.records import Writer
 
 Values = NDArray[np.float64]
 Places = NDArray[np.int64]
 
-_GRID, _LIST = 0, 1
+_GRID, _LIST, _ALL = 0, 1, 2
 _TRIED = 8
 _MOVED = 4.0
 """Bits beside those of the distance that it costs to tell that a number is off its grid."""
 _BOXED = np.uint64(0x7FF80001 << 32)
 """Bits of a NaN in the place of a number that is not in the table; its float32 is below them."""
-_LOW = np.uint64(2**32 - 1)
 _FARTHEST = 2.0**52
+_MOST = float(np.finfo(np.float32).max)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Table:
-    """A grid or a list of float32 numbers."""
+    """A grid, a list or all of float32 numbers."""
 
     origin: float = 0.0
     step: float = 0.0
@@ -41,6 +42,9 @@ class Table:
     """How many floats."""
     numbers: Values = field(default_factory=lambda: np.empty(0))
     """Of a list, in ascending order."""
+    all: bool = False
+    rounding: Rounding | None = None
+    """Of all: which decimals stand for numbers; decoding does without."""
 
     @property
     def size(self) -> int:
@@ -49,6 +53,8 @@ class Table:
 
     def values(self, places: Values) -> Values:
         """Give the numbers at places; what is no place of the table is NaN."""
+        if self.all:
+            return np.clip(places, -_MOST, _MOST).astype(np.float32).astype(np.float64)
         if not self.step:
             with np.errstate(invalid="ignore"):
                 inside = (places >= 0) & (places < len(self.numbers)) & (places == np.rint(places))
@@ -65,6 +71,8 @@ class Table:
 
     def indices(self, values: Values) -> Values:
         """Give places of numbers; only where ``values`` gives a number back is it in the table."""
+        if self.rounding is not None:
+            return self.rounding.of(values)
         if not self.step:
             at = np.minimum(np.searchsorted(self.numbers, values), len(self.numbers) - 1)
             return at.astype(np.float64)
@@ -96,25 +104,6 @@ def coded(table: Table, values: Values) -> Values:
     return places
 
 
-def decoded(table: Table, places: Values) -> Values:
-    """Give the numbers of a column of places, (F,).
-
-    Raises
-    ------
-    CorruptError
-        When a place is not in a list.
-
-    """
-    numbers = table.values(places)
-    boxed = np.isnan(places)
-    if not table.step and np.isnan(numbers[~boxed]).any():
-        raise CorruptError("exact: a place outside its list")
-    low = (places[boxed].view(np.uint64) & _LOW).astype(np.uint32)
-    with np.errstate(invalid="ignore"):
-        numbers[boxed] = low.view(np.float32).astype(np.float64)
-    return numbers
-
-
 class Tables:
     """Tables that are worth it, found column by column."""
 
@@ -139,8 +128,10 @@ class Tables:
         made = find_grid(distinct)
         grid = None if made is None else Table(*made)
         listed = Table(numbers=distinct) if 2 * len(distinct) < len(moved) else None
+        rounding = find_rounding(distinct)
+        decimals = None if rounding is None else Table(all=True, rounding=rounding)
         chosen = None
-        for table in (grid, listed):
+        for table in (grid, listed, decimals):
             gain = saved.by(table) if table is not None else 0.0
             if gain > best + 1:
                 best, chosen = gain, table
@@ -173,7 +164,9 @@ class _Saving:
         off = table.values(places).view(np.uint64) != self.numbers.view(np.uint64)
         if off.sum() * 16 > len(off):
             return 0.0
-        if table.step:
+        if table.rounding is not None:
+            density, cost = np.log2(table.rounding.steps(self.numbers)), 24.0
+        elif table.step:
             density = np.full(len(places), np.log2(table.step))
             cost = 120.0 + float((np.log2(np.abs(table.away) + 1) + _MOVED).sum())
         else:
@@ -189,7 +182,9 @@ class _Saving:
 def write_tables(writer: Writer, tables: Iterable[Table]) -> None:
     """Append tables."""
     for table in tables:
-        writer.integer(_GRID if table.step else _LIST)
+        writer.integer(_ALL if table.all else _GRID if table.step else _LIST)
+        if table.all:
+            continue
         if table.step:
             writer.double(table.origin)
             writer.double(table.step)
@@ -207,43 +202,3 @@ def _write_steps(writer: Writer, numbers: Places, first: Callable[[int], None]) 
         first(int(numbers[0]))
     for step in np.diff(numbers).tolist():
         writer.integer(step - 1)
-
-
-def read_tables(reader: Reader, count: int) -> list[Table]:
-    """Take so many tables.
-
-    Raises
-    ------
-    CorruptError
-        When they are no tables that ``write_tables`` writes.
-
-    """
-    tables = []
-    for _ in range(count):
-        if reader.integer(_LIST) == _GRID:
-            origin, step = reader.double(), reader.double()
-            if not np.isfinite(origin) or not 0 < step < np.inf:
-                raise reader.fail("a grid without a step")
-            places = _read_steps(reader)
-            away = [reader.signed() for _ in range(len(places))]
-            if any(abs(number) >= 2**32 for number in away):
-                raise reader.fail("a number too far from its grid")
-            tables.append(Table(origin, step, places, np.array(away, np.int64)))
-        else:
-            places = _read_steps(reader)
-            if not len(places) or places[0] < -(2**31) or places[-1] >= 2**31:
-                raise reader.fail("a list without numbers, or of such as are no floats")
-            tables.append(Table(numbers=float_at(places).astype(np.float64)))
-    return tables
-
-
-def _read_steps(reader: Reader) -> Places:
-    count = reader.count()
-    numbers = np.zeros(count, np.int64)
-    last = 0
-    for i in range(count):
-        last = last + 1 + reader.integer(2**33) if i else reader.signed()
-        if abs(last) >= _FARTHEST:
-            raise reader.fail("a place beyond all numbers")
-        numbers[i] = last
-    return numbers

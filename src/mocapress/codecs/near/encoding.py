@@ -68,15 +68,20 @@ class Encoder:
         self.weights = np.ones(self.measure.points)
         self.shares = self._shares(skeleton)
         self.joints = joints_of(stream.columns, skeleton)
+        self.columns = stream.columns
+        self.rate, self.starts = _RATE, goal.in_space
+        turns = goal.in_space and max_error == inf
+        self.turn(known=turns and is_known(self.measure, stream.columns, self.values), orders=turns)
+
+    def turn(self, *, known: bool, orders: bool) -> None:
+        """Let curves turn as the known figure's do, or, by `orders`, as is best for each joint."""
+        self.known = known
         self.turnings: list[Turning] = []
-        self.known = False
-        if goal.in_space and max_error == inf:
-            scale = goal.mean * _SCALE_OF_MEAN
-            self.known = is_known(self.measure, stream.columns, self.values)
-            if self.known:
-                self.turnings = nearest(self.measure, self.values, known_turnings())
-            else:
-                self.turnings = turnings_of(self.measure, stream.columns, self.values, scale)
+        if known:
+            self.turnings = nearest(self.measure, self.values, known_turnings())
+        elif orders:
+            scale = self.goal.mean * _SCALE_OF_MEAN
+            self.turnings = turnings_of(self.measure, self.columns, self.values, scale)
         self.curves = _core.near_turned_measure(self.measure.core, self.turnings)
         self.exponents = self._levers()
 
@@ -155,7 +160,7 @@ class Encoder:
 
     def _start(self, scale: float) -> int:
         """Give the learned start that is nearest, from 1 on; 0 where the scale says nothing."""
-        if not self.goal.in_space:
+        if not self.starts:
             return 0
         return 1 + sum(scale / self.goal.size >= each for each in _STARTS)
 
@@ -184,7 +189,7 @@ class Encoder:
             self.values[first : first + self.chunk],
             self._header(scale, (0.0, 0.0)),
             scale,
-            _RATE,
+            self.rate,
             self.weights,
             most,
             self.value_most,
