@@ -5,11 +5,14 @@
 Sizes are those of whole ``.mcz`` files of every twelfth clip, from the first on, at the default
 level, each restored and compared. Times are processor times of the only thread: ``mp.load`` of one
 frame of the named clip's file, the mean over 100 frames chosen at random, and beside it ``mp.read``
-of its text, the median of nine.
+of its text, the median of nine. A second table has ``mp.load`` of the whole file, by level; its
+chunks are decoded in threads where there are cores, so run it on one (``taskset -c 0``).
 """
 
 import sys
 import tempfile
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from statistics import median
 from time import thread_time
@@ -30,14 +33,30 @@ def size(path: Path, chunk: int) -> int:
     return len(blob)
 
 
-def reading(path: Path) -> float:
-    """Give the seconds of reading the text."""
+def seconds(action: Callable[[], object]) -> float:
+    """Give the seconds that something takes, the median of nine."""
     times = []
     for _ in range(9):
         start = thread_time()
-        mp.read(path)
+        action()
         times.append(thread_time() - start)
     return median(times)
+
+
+def reading(path: Path) -> float:
+    """Give the seconds of reading the text."""
+    return seconds(lambda: mp.read(path))
+
+
+def opening(path: Path) -> list[list[str]]:
+    """Give a row for each level: bytes, milliseconds to load, share of reading the text."""
+    rows = []
+    for level in range(1, 10):
+        blob = mp.compress(path, f"exact:level={level}")
+        loading = seconds(partial(mp.load, blob))
+        share = f"{loading / reading(path):.2f}"
+        rows.append([str(level), f"{len(blob):,}", f"{1e3 * loading:.1f}", share])
+    return rows
 
 
 def one_frame(path: Path, chunk: int) -> float:
@@ -67,6 +86,8 @@ def main(folder: Path, clip: str) -> None:
     print(f"{len(paths)} clips; reading the text of {Path(clip).name}: {1e3 * text:.1f} ms.\n")
     head = ["frames per chunk", "bytes", "more", "ms for one frame", "share of reading the text"]
     print(markdown(head, rows))
+    print()
+    print(markdown(["level", "bytes", "ms to load", head[-1]], opening(folder / clip)))
 
 
 if __name__ == "__main__":

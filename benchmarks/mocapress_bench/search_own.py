@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.search.index import Entry, entry_of
-from mocapress.search.ranking import find, rank
+from mocapress.search.ranking import CLOSELY, find, rank
 from mocapress.search.standard import standard_motion
 from mocapress_bench.search_data import RATE, Take
-from mocapress_bench.search_measures import MOST
 from mocapress_bench.search_rivals import Index
 from mocapress_bench.search_stretches import Finder, Hit, Long
 
@@ -22,7 +21,7 @@ _BEHIND = 1e6
 def own_search(takes: Sequence[Take], seed: int) -> Index:  # noqa: ARG001
     """Index by signatures, of which the nearest are compared again, as in a search for twenty.
 
-    The clip that asks is found as well. Clips behind those found follow by their signatures.
+    Clips that are not compared again follow by their signatures.
     """
     motions = [standard_motion(take.clip) for take in takes]
     entries = [entry_of(motion) for motion in motions]
@@ -31,9 +30,16 @@ def own_search(takes: Sequence[Take], seed: int) -> Index:  # noqa: ARG001
 
     def distances(query: Entry, mirrored: Entry | None = None) -> Array:
         asked = [_numbers(one) for one in (query, mirrored) if one is not None]
-        found = _BEHIND + np.min([np.linalg.norm(kept - own, axis=1) for own in asked], axis=0)
+        found: Array = _BEHIND + np.min(
+            [np.linalg.norm(kept - own, axis=1) for own in asked], axis=0
+        )
         for hit in rank(
-            query, signatures, lambda i: entries[i].features, MOST + 1, mirrored=mirrored
+            query,
+            signatures,
+            lambda i: entries[i].features,
+            len(entries),
+            mirrored=mirrored,
+            closely=CLOSELY,
         ):
             found[hit.place] = hit.score
         return found

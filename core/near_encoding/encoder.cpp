@@ -50,16 +50,26 @@ class Encoding {
   }
 
   Coded run() {
-    curves();
-    for (int round = 0; round < task_.rounds && raise(round); ++round) curves();
-    const auto corrections = correct();
-    turn_back(drawn_.data(), frames_, task_.plan, starts_);
-    const auto kept = keep();
-    Marks marks(side_, frames_, channels_);
-    marks.corrections(corrections, [](const Correction&) {});
-    marks.kept(kept, [](std::size_t, std::size_t, double) {});
     Coded coded;
-    coded.payload = side_.finish();
+    std::vector<Kept> kept;
+    // Costlier errors may cost more than corrections: the smallest payload stays.
+    for (int round = 0;; ++round) {
+      curves();
+      const std::vector<double> drawn = drawn_;
+      const auto corrections = correct();
+      turn_back(drawn_.data(), frames_, task_.plan, starts_);
+      auto own = keep();
+      Marks marks(side_, frames_, channels_);
+      marks.corrections(corrections, [](const Correction&) {});
+      marks.kept(own, [](std::size_t, std::size_t, double) {});
+      Bytes payload = side_.finish();
+      if (round == 0 || payload.size() < coded.payload.size()) {
+        coded.payload = std::move(payload);
+        kept = std::move(own);
+      }
+      drawn_ = drawn;
+      if (round == task_.rounds || !raise(round)) break;
+    }
     coded.values.resize(frames_ * channels_);
     decode(coded.payload, coded.values.data(), frames_, task_.plan);
     const std::size_t points = file_measure_.points(channels_);
@@ -289,29 +299,18 @@ class Encoding {
     std::vector<Correction> corrections;
     for (std::size_t f = 0; f < frames_; ++f) {
       if (points[f].empty()) continue;
-      std::vector<std::size_t> near;
-      for (const std::size_t point : points[f]) {
-        for (const std::size_t c : movers(point, channels_)) near.push_back(c);
-      }
-      std::sort(near.begin(), near.end());
-      near.erase(std::unique(near.begin(), near.end()), near.end());
-      std::vector<std::size_t> all(channels_);
-      std::iota(all.begin(), all.end(), std::size_t{0});
       Correction best{f, 0, {}};
       double least = kInfinite;
-      for (const auto& candidates : {near, all}) {
-        for (int fineness = 0; fineness < 16; ++fineness) {
-          Correction one{f, fineness, {}};
-          if (!moved_back(one, candidates)) continue;
-          double bits = 0;
-          for (const auto& [c, times] : one.added) bits += 4 + 2 * std::log2(std::abs(times));
-          if (bits < least) {
-            least = bits;
-            best = one;
-          }
-          break;
+      for (const std::size_t joints : {std::size_t{1}, std::size_t{2}, std::size_t{4}, channels_}) {
+        std::vector<std::size_t> near;
+        for (const std::size_t point : points[f]) {
+          for (const std::size_t c : movers(point, joints)) near.push_back(c);
         }
+        choose(near, best, least);
       }
+      std::vector<std::size_t> all(channels_);
+      std::iota(all.begin(), all.end(), std::size_t{0});
+      if (best.added.empty()) choose(all, best, least);
       if (best.added.empty()) continue;
       for (const auto& [c, times] : best.added) {
         drawn_[f * channels_ + c] += times * part_of(steps_[c], best.fineness);
@@ -321,22 +320,49 @@ class Encoding {
     return corrections;
   }
 
-  // Whether these channels, moved to the nearest part of a step, bring a frame within its bound.
-  bool moved_back(Correction& one, const std::vector<std::size_t>& candidates) const {
-    const double* const wanted = &wanted_[one.frame * channels_];
+  // The coarsest correction of these channels that is enough, without what it can do without, if it
+  // is cheaper than the least so far.
+  void choose(std::vector<std::size_t> candidates, Correction& best, double& least) const {
+    std::sort(candidates.begin(), candidates.end());
+    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+    for (int fineness = 0; fineness < 16; ++fineness) {
+      Correction one{best.frame, fineness, {}};
+      if (!moved_back(one, candidates)) continue;
+      for (std::size_t k = one.added.size(); k-- > 0 && one.added.size() > 1;) {
+        Correction fewer = one;
+        fewer.added.erase(fewer.added.begin() + static_cast<std::ptrdiff_t>(k));
+        if (is_enough(fewer)) one = std::move(fewer);
+      }
+      double bits = 8;
+      for (const auto& [c, times] : one.added) bits += 6 + 2 * std::log2(std::abs(times));
+      if (bits < least) {
+        least = bits;
+        best = std::move(one);
+      }
+      return;
+    }
+  }
+
+  // Whether a frame is within its bound with a correction.
+  bool is_enough(const Correction& one) const {
     std::vector<double> row(&drawn_[one.frame * channels_],
                             &drawn_[one.frame * channels_] + channels_);
+    for (const auto& [c, times] : one.added) row[c] += times * part_of(steps_[c], one.fineness);
+    std::vector<double> errors(measure_.points(channels_));
+    measure_.errors(&wanted_[one.frame * channels_], row.data(), channels_, errors.data());
+    return within(errors.data());
+  }
+
+  // Whether these channels, moved to the nearest part of a step, bring a frame within its bound.
+  bool moved_back(Correction& one, const std::vector<std::size_t>& candidates) const {
     for (const std::size_t c : candidates) {
-      const double part = part_of(steps_[c], one.fineness);
-      const double times = std::round((wanted[c] - row[c]) / part);
+      const std::size_t at = one.frame * channels_ + c;
+      const double times =
+          std::round((wanted_[at] - drawn_[at]) / part_of(steps_[c], one.fineness));
       if (times == 0 || std::fabs(times) > 1e9) continue;
-      row[c] += static_cast<std::int32_t>(times) * part;
       one.added.emplace_back(c, static_cast<std::int32_t>(times));
     }
-    if (one.added.empty()) return false;
-    std::vector<double> errors(measure_.points(channels_));
-    measure_.errors(wanted, row.data(), channels_, errors.data());
-    return within(errors.data());
+    return !one.added.empty() && is_enough(one);
   }
 
   // What is no number, and what is still beyond a bound.

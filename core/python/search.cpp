@@ -62,7 +62,7 @@ void bind_search(nb::module_& module) {
       "find_stretches", &bound_find_stretches, nb::arg("wanted"), nb::arg("motion"),
       nb::arg("damped") = false,
       "Of each frame of the motion (G, D), the best match of (F, D) that ends there: mean "
-      "distances (G,), infinite for none, and first frames (G,). Damped: of distances to 3/4.");
+      "distances (G,), infinite for none, and first frames (G,). Damped: of distances to 5/8.");
 }
 
 }  // namespace mocapress

@@ -38,7 +38,7 @@ struct Matches {
 
 // Subsequence warping: for each frame of `motion` the best match of all of `wanted` that ends
 // there, by steps (1, 1), (1, 2) and (2, 1), so that no match is below half or above twice as fast.
-// Infinite where there is none. `damped`: distances count by their power 3/4, so that a few frames
+// Infinite where there is none. `damped`: distances count by their power 5/8, so that a few frames
 // that are far do not rule a match out.
 Matches find_stretches(const Frames& wanted, const Frames& motion, bool damped);
 

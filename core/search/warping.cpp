@@ -77,7 +77,7 @@ Matches find_stretches(const Frames& wanted, const Frames& motion, bool damped) 
       float here = wanted.distance(i, motion, j);
       if (damped) {
         const float root = std::sqrt(here);
-        here = root * std::sqrt(root);
+        here = root * std::sqrt(std::sqrt(root));
       }
       now.costs[j] = i == 0 ? here : kInfinite;
       now.starts[j] = static_cast<std::int32_t>(j);

@@ -536,5 +536,5 @@ def warp(one: Annotated[NDArray[numpy.float32], dict(shape=(None, None), order='
 
 def find_stretches(wanted: Annotated[NDArray[numpy.float32], dict(shape=(None, None), order='C', device='cpu', writable=False)], motion: Annotated[NDArray[numpy.float32], dict(shape=(None, None), order='C', device='cpu', writable=False)], damped: bool = False) -> tuple[Annotated[NDArray[numpy.float32], dict(shape=(None,))], Annotated[NDArray[numpy.int32], dict(shape=(None,))]]:
     """
-    Of each frame of the motion (G, D), the best match of (F, D) that ends there: mean distances (G,), infinite for none, and first frames (G,). Damped: of distances to 3/4.
+    Of each frame of the motion (G, D), the best match of (F, D) that ends there: mean distances (G,), infinite for none, and first frames (G,). Damped: of distances to 5/8.
     """

@@ -321,6 +321,7 @@ def _put(place: str, value: object) -> Any:
         ("asset.version", "1.0", "2.0"),
         ("asset", [], "an object"),
         ("animations.0.extras", {"frame_time": "1/99999999999"}, "so many frames"),
+        ("animations.0.extras", {"frame_time": "1/40000000"}, "so many frames; expected at most"),
     ],
 )
 def test_forged_documents_are_told(place: str, value: object, fault: str) -> None:

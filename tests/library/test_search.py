@@ -286,6 +286,38 @@ def test_clips_without_an_index_get_one_when_they_are_searched(
     assert (facts["searchable"], facts["index_bytes"]) == (2, sum(sizes))
 
 
+def test_odd_clips_are_searched_or_said_to_have_no_body(
+    tmp_path: Path, samples: Path, bank: mp.Clip
+) -> None:
+    path = tmp_path / "lib.mocapdb"
+    still = bank.with_values(np.repeat(bank.values[:1], bank.frames, axis=0))
+    spider = mp.from_positions(
+        np.ones((30, 4, 3)), ["body", "a", "b", "c"], 30, parents=[-1, 0, 0, 0]
+    )
+    with mp.open_library(path, "a") as library:
+        for name, clip in (
+            ("whole", bank),
+            ("one", bank[:1]),
+            ("still", still),
+            ("spider", spider),
+        ):
+            library.add(clip, name, codec="exact:level=1")
+        assert library.lacking() == 0
+        for query in (bank, bank[:1], still):
+            assert {hit.name for hit in library.search(query)} == {"whole", "one", "still"}
+        assert library.search(bank[:1])[0].name in {"one", "still"}
+        assert {hit.name for hit in library.search(bank[:1], within=True)} <= {
+            "whole",
+            "one",
+            "still",
+        }
+    mp.write(spider, tmp_path / "spider.bvh")
+    done = mocapress("search", path, tmp_path / "spider.bvh")
+    assert done.exit_code == 1
+    assert "left_knee" in done.stderr
+    assert "--joints" in done.stderr
+
+
 def test_a_library_made_without_an_index_stays_so_when_it_is_searched(
     samples: Path, tmp_path: Path
 ) -> None:

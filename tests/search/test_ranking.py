@@ -62,6 +62,33 @@ def test_one_frame_and_what_is_still_can_be_asked_for_and_found(
     ).all()
 
 
+def test_a_clip_of_twenty_thousand_frames_is_found_and_so_is_a_stretch_of_it(
+    kept: list[Entry],
+) -> None:
+    clip = person(20, frames=20_000, fps=120)
+    long = entry(clip)
+    assert places(long, [*kept, long])[0] == len(kept)
+    assert len(long.features) < 200 * 20_000 / 120
+    query = entry(clip[12_000:12_360])
+    hit = find(query, enumerate(one.features for one in [*kept, long]), 1)[0]
+    assert hit.place == len(kept)
+    assert hit.start == pytest.approx(100, abs=0.2)
+    assert hit.end == pytest.approx(103, abs=0.2)
+
+
+def test_examples_bring_what_is_like_them_forward() -> None:
+    """What the query and all that is like it have in common counts more than what only it has."""
+    seeds = (1, 2, 3, 4)
+    long = [entry(person(seed, frames=300)) for seed in seeds]
+    query = entry(person(1, frames=300)[100:145])
+    hits = find(query, enumerate(one.features for one in long), 3)
+    assert hits[0].place == 0
+    assert hits[0].start == pytest.approx(3.33, abs=0.2)
+    assert len({(hit.place, hit.start) for hit in hits}) == 3
+    assert find(query, []) == []
+    assert find(query, [(0, entry(person(1, frames=2)).features)]) == []
+
+
 def test_what_is_like_the_mirror_image_is_found_when_it_is_given(kept: list[Entry]) -> None:
     motion = standard_motion(person(5))
     query, image = entry_of(motion.mirrored()), entry_of(motion)

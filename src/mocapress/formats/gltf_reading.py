@@ -28,7 +28,8 @@ _WIDTHS = {"translation": 3, "rotation": 4, "scale": 3}
 _RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 240)
 _NEAR = 0.02
 """Of a frame: how far keys may lie beside it."""
-_MOST_NUMBERS = 2**27
+_LEAST_LIMIT, _LIMIT_OF_BYTES = 2**20, 2**12
+"""How many numbers a clip may have: what is allocated is bounded by the file, not by its times."""
 _SAID = re.compile(r"(\d{1,20})(\.\d{1,30}|/[1-9]\d{0,19})?")
 _METRE = CENTIMETRES_PER_INCH / 100
 
@@ -87,14 +88,15 @@ def read(data: bytes, _skeleton: Skeleton | None = None, file: str | None = None
     """
     problems: list[Problem] = []
     try:
-        clip = _clip(Gltf(data), Path(file).stem if file else "", problems)
+        most = _LEAST_LIMIT + _LIMIT_OF_BYTES * len(data)
+        clip = _clip(Gltf(data), Path(file).stem if file else "", problems, most)
     except (FormatError, UnsupportedError) as error:
         error.file = error.file or file
         raise
     return Split(clip, NO_ROWS, tuple(problems))
 
 
-def _clip(gltf: Gltf, name: str, problems: list[Problem]) -> Clip:
+def _clip(gltf: Gltf, name: str, problems: list[Problem], most: int) -> Clip:
     nodes = gltf.document.items("nodes")
     animations = gltf.document.items("animations")
     tracks = _tracks(gltf, animations[0], len(nodes)) if animations else {}
@@ -108,11 +110,8 @@ def _clip(gltf: Gltf, name: str, problems: list[Problem]) -> Clip:
             )
         )
     order = _joints(gltf, nodes, {node for node, _ in tracks})
-    frame_time, times = _frames(tracks, animations[0] if animations else None, problems)
-    if len(times) * len(order) * 6 > _MOST_NUMBERS:
-        raise UnsupportedError(
-            "an animation of so many frames", found=f"{len(times)} of {len(order)} joints"
-        )
+    animation = animations[0] if animations else None
+    frame_time, times = _frames(tracks, animation, problems, most // (6 * len(order)))
     values, joints = _sampled(nodes, order, tracks, times)
     skeleton = Skeleton(joints, "moving", "deg", _METRE)
     columns = skeleton_columns(skeleton)
@@ -178,7 +177,7 @@ def _is_plain(node: Node) -> bool:
 
 
 def _frames(
-    tracks: Tracks, animation: Node | None, problems: list[Problem]
+    tracks: Tracks, animation: Node | None, problems: list[Problem], most: int
 ) -> tuple[FrameTime, Array]:
     """Give the frame time, and the times of the frames."""
     if not tracks or animation is None:
@@ -198,8 +197,10 @@ def _frames(
             what = f"keys at no usual rate; sampled {_RATES[-1]} times a second"
             problems.append(Problem.of("resampled", what))
     count = end / float(step) + 1
-    if count > _MOST_NUMBERS:
-        raise UnsupportedError("an animation of so many frames", found=f"{count:.3g}")
+    if count > most:
+        raise UnsupportedError(
+            "an animation of so many frames", expected=f"at most {most}", found=f"{count:.6g}"
+        )
     frames = round(count)
     return step, np.arange(frames) * np.float64(step)
 

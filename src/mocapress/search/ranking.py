@@ -14,7 +14,7 @@ from mocapress.search.standard import RATE
 
 Array = NDArray[np.float64]
 
-_CANDIDATES = 100
+CLOSELY = 100
 """Clips that are compared closely, or five times as many as are wanted."""
 _FIRST = 3
 """The best clips, whose own neighbours count, too."""
@@ -26,9 +26,9 @@ _FRAMES = 256
 """Frames of clips that are aligned; longer ones are thinned."""
 _ABANDON, _ENOUGH = 3.0, 5
 """Alignments are given up, and count as so bad, when so many times as bad as the fifth best."""
-_EXAMPLES = 10
+_EXAMPLES = 15
 """The best stretches, by which others are judged as well."""
-_CLEAR = 0.68
+_CLEAR = 0.73
 """Part of the usual cost, the median over all frames, below which a stretch is an example."""
 _OWN = 0.3
 """Weight of the query itself beside the mean of examples."""
@@ -59,6 +59,7 @@ def rank(
     top: int = 20,
     *,
     mirrored: Entry | None = None,
+    closely: int | None = None,
 ) -> list[Hit]:
     """Find the clips that are most like a query.
 
@@ -77,6 +78,8 @@ def rank(
         How many are wanted at most.
     mirrored
         The query's mirror image, if clips may be like the one or the other.
+    closely
+        How many are compared again; 100 by default, or five times as many as are wanted.
 
     Raises
     ------
@@ -92,7 +95,7 @@ def rank(
         [_core.scan_signatures(np.frombuffer(one.signature, np.int8), kept) for one in queries],
         axis=0,
     )
-    most = min(max(_CANDIDATES, 5 * top), len(kept))
+    most = min(closely or max(CLOSELY, 5 * top), len(kept))
     chosen = np.argsort(near, kind="stable")[:most]
     records = [read_record(features(int(place))) for place in chosen]
     aligned = np.min([_alignments(read_record(one.features), records) for one in queries], axis=0)
@@ -147,7 +150,7 @@ def find(query: Entry, features: Iterable[tuple[int, bytes]], top: int = 20) -> 
             others = [_core.find_stretches(one, motion, damped=True)[0] for one in examples]
             costs[number] = _OWN * costs[number] + (1 - _OWN) * np.mean(others, axis=0)
     again = [(own, starts) for own, (_, starts) in zip(costs, matches, strict=True)]
-    hits = _stretches(again, max(_CANDIDATES, top))
+    hits = _stretches(again, max(CLOSELY, top))
     scores = _scores(wanted, records, hits)
     order = np.argsort(scores, kind="stable")[:top]
     seconds = EVERY / RATE

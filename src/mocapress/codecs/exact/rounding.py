@@ -30,7 +30,7 @@ class Rounding:
         with np.errstate(divide="ignore"):
             exponents = np.floor(np.log10(np.abs(values)))
         exponents[~np.isfinite(exponents)] = 0
-        decimals = np.clip(self.digits - 1 - exponents, -_MOST_POWER, _MOST_POWER)
+        decimals: Values = np.clip(self.digits - 1 - exponents, -_MOST_POWER, _MOST_POWER)
         return decimals.astype(np.int64)
 
     def of(self, values: Values) -> Values:

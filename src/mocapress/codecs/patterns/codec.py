@@ -66,7 +66,7 @@ class Patterns(Codec):
     """Of a body part, at first."""
     steps: int = 1
     """Of clustering many clips: all segments at once, or (2) those of each clip and then the
-    clusters, which is quicker."""
+    clusters."""
     mode: str = "extended"
     """``published``: as printed; ``extended``: segments' means apart, and axes of body parts."""
     hierarchy: str = AUTOMATIC
