@@ -2,10 +2,10 @@
 
     python benchmarks/near_rates.py CORPUS/amc/cmu [--clips 05_05,141_01] [--p 0.1]
 
-ACL's figures are in near_acl.tsv beside this script. By default clips of two kinds are taken: those
-by which settings of `near` were chosen, and those by which none was. Bytes are those of codec
-header and payloads, without names and layout; errors are cm, of what was decoded; times are
-processor time of one thread.
+ACL's figures are in near_acl.tsv beside this script. What `near` begins with was learned from none
+of these clips' subjects (near_start.py); its settings were looked at on all of them. Bytes are
+those of codec header and payloads, without names and layout; errors are cm, of what was decoded;
+times are processor time of one thread.
 """
 
 import argparse
@@ -26,7 +26,7 @@ from mocapress.motion.units import centimetres_per_unit, figure_size
 from mocapress_bench.tables import markdown
 
 CLIPS = ("01_01", "05_05", "49_02", "60_01", "141_01")
-"""Settings were chosen by 01_01 and 49_02 (and 35_01, 09_01, 16_15), none by the other three."""
+"""Of subjects that near_start.py leaves out."""
 PRECISIONS = (0.01, 0.05, 0.1, 0.3, 1.0)
 HEADER = (
     *("clip", "p", "bytes", "of ACL's", "mean", "ACL's", "largest", "ACL's", "worst joint"),

@@ -253,3 +253,13 @@ def test_feet_are_protected_only_where_there_are_some(walk: mp.Clip) -> None:
     still = walk[:1]
     encoded = made.encode(still.main, skeleton=still.skeleton)
     assert made.decode(encoded.header, encoded.chunks, still.columns).shape == still.values.shape
+
+
+def test_a_model_of_another_skeleton_is_not_needed(samples: Path, model: Model) -> None:
+    clip = mp.read(samples / "freebvh.bvh")
+    packed = mp.compress(clip, "qssd", model=model)
+    assert packed == mp.compress(clip, "qssd")
+    assert mp.load(packed).frames == clip.frames
+    own = mp.compress(mp.read(samples / "cmu_01_01.amc")[:200], "qssd", model=model)
+    with pytest.raises(mp.MocapressError, match="model"):
+        mp.load(own)

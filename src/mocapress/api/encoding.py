@@ -29,7 +29,7 @@ def coded(
     """Give what a file holds of the first stream of a clip: its stream ``index``, ``name``."""
     head = replace(
         stream_head(name, clip.main, codec, frames=clip.frames),
-        model=model.digest if model else b"",
+        model=model.digest if model and encoded.uses_model else b"",
         header=encoded.header,
     )
     return head, coded_chunks(clip, head, index, codec, encoded, model)

@@ -87,6 +87,8 @@ class Encoded:
     chunks: tuple[Chunk, ...]
     index_bytes: int = 0
     """How many of the payload bytes are side information (APP: the alpha indices, Eq. 10)."""
+    uses_model: bool = True
+    """Whether decoding needs the model that was given, if one was."""
 
 
 class Origin(NamedTuple):

@@ -120,7 +120,7 @@ class QSSD(Codec):
                     rows, header, payload, self.most, _ROUNDING, _REST_ROUNDING, most
                 )
                 chunks.append(Chunk(first, len(rows), coded))
-            return Encoded(header, tuple(chunks))
+            return Encoded(header, tuple(chunks), uses_model=learned)
 
         limits = np.full(stream.values.shape, self.max_error)
         if not isfinite(self.protect):
