@@ -87,7 +87,7 @@ def test_the_picture_shows_where_the_errors_are(tmp_path: Path) -> None:
     words = ("compare", WALK, tmp_path / "off.mcz", "--picture", tmp_path / "off.png")
     assert mocapress(*words).exit_code == 0
     again = mocapress(*words)
-    assert (again.exit_code, "--force overwrites it" in again.stderr) == (3, True)
+    assert (again.exit_code, "--force overwrites it" in again.stderr) == (1, True)
     drawn = np.asarray(image.open(tmp_path / "off.png").convert("RGB"), dtype=int)
     red = (drawn[..., 0] > 150) & (drawn[..., 1] < 80) & (drawn[..., 2] < 80)
     columns = np.flatnonzero(red.any(axis=0))
@@ -104,3 +104,8 @@ def test_feet_have_contacts(tmp_path: Path) -> None:
     assert all(0 <= share <= 1 for share in standing.values())
     assert 0 < standing["RightAnkle"] < 1
     assert "contact" in mocapress("stats", WALK).stdout
+
+
+def test_a_file_that_is_not_there_is_no_difference_and_no_damage(tmp_path: Path) -> None:
+    assert mocapress("compare", WALK, tmp_path / "none.bvh", "--max", 0).exit_code == 1
+    assert mocapress("verify", tmp_path / "none.mcz").exit_code == 1

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from mocapress.errors import MocapressError, ParameterError
+from mocapress.storage import ExistsError
 
 if TYPE_CHECKING:
     from mocapress.cli.batch import Job
@@ -77,8 +78,14 @@ class Report:
         if any(is_defect(job.error) for job in self.failed):
             raise typer.Exit(DEFECT)
         if self.failed:
-            parameters = all(isinstance(job.error, ParameterError) for job in self.failed)
-            raise typer.Exit(2 if parameters else self.failure_code)
+            raise typer.Exit(max(map(self._code, self.failed)))
+
+    def _code(self, job: "Job") -> int:
+        """Give the exit code of a failure; that of the command is for what is wrong in a file."""
+        if isinstance(job.error, OSError | ExistsError):
+            return 1
+        alone = all(isinstance(failed.error, ParameterError) for failed in self.failed)
+        return 2 if alone else self.failure_code
 
     def interrupt(self, jobs: int | None) -> None:
         """Say how far it came."""
