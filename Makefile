@@ -24,9 +24,10 @@ demo-runs: $(VENV)/.installed
 	@mkdir -p build
 	@$(MAKE) --no-print-directory demo >build/demo.log 2>&1 || { cat build/demo.log; exit 1; }
 
-# What takes too long for every test run: 1,000 kills at random moments, then one before every call;
+# What takes too long for every test run: builds that are much like others; 1,000 kills at random moments, then one before every call;
 # 10,000 mutants of each codec and format; texts that tell several lies; a table of 10 GB.
-long: $(VENV)/.built corpus
+long: $(VENV)/.built $(VENV)/.zig corpus compilers
+	MOCAPRESS_LONG=1 $(BIN)/pytest tests/core
 	$(BIN)/python tests/campaigns/kills.py --runs 1000 \
 	    $(if $(wildcard corpus/.version),--corpus corpus) --every-call
 	$(BIN)/python tests/campaigns/library_kills.py --runs 300
@@ -179,7 +180,7 @@ check_clang_o0 := clang++ -O0 $(EXACT) $(ONE)
 check_aarch64 := aarch64-linux-gnu-g++ -O3 -static $(EXACT) $(ONE)
 check_windows := x86_64-w64-mingw32-g++-posix -O3 -static $(EXACT) $(ONE)
 # Not allowed; that it prints something else shows that the check sees it.
-check_contracted := $(CXX) -O1 -mavx2 -mfma $(EXACT) $(ONE) -ffp-contract=fast
+check_contracted := $(CXX) -O2 -mavx2 -mfma $(EXACT) $(ONE) -ffp-contract=fast
 
 # With the module's own flags, run by Node.
 check_wasm := $(ZIG) -O2 $(ONE)

@@ -32,6 +32,8 @@ class Way(NamedTuple):
     """The emulator that runs it."""
     ending: str = ""
     """Of the program's name."""
+    seldom: bool = False
+    """Only in `make long`: another way is much like it."""
 
 
 V4 = frozenset({"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"})
@@ -39,11 +41,11 @@ FUSED = frozenset({"avx2", "fma"})
 WAYS = {
     "as the package is built": Way("usual"),
     "-O0": Way("o0"),
-    "-O3 for any x86-64": Way("baseline"),
-    "AVX2 and FMA": Way("avx2", features=FUSED),
+    "-O3 for any x86-64": Way("baseline", seldom=True),
+    "AVX2 and FMA": Way("avx2", features=FUSED, seldom=True),
     "AVX-512": Way("avx512", features=V4),
     "clang with AVX2 and FMA": Way("clang", "clang++", FUSED),
-    "clang -O0": Way("clang_o0", "clang++"),
+    "clang -O0": Way("clang_o0", "clang++", seldom=True),
     "aarch64, emulated": Way("aarch64", "aarch64-linux-gnu-g++", under=("qemu-aarch64",)),
     "Windows": Way("windows", "x86_64-w64-mingw32-g++-posix", under=("wine",), ending=".exe"),
     "WebAssembly, in Node": Way(
@@ -60,6 +62,8 @@ WAYS = {
 
 def printed(way: Way) -> dict[str, str]:
     """Build the check programs and give what each prints; skip what this machine cannot do."""
+    if way.seldom and not os.environ.get("MOCAPRESS_LONG"):
+        pytest.skip("only in `make long`")
     for command in (way.compiler, *way.under[:1]):
         if command and not shutil.which(command):
             pytest.skip(f"{command} is not installed")

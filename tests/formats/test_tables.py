@@ -173,3 +173,16 @@ def test_rows_that_are_broken_are_named_and_cost_no_others(
 def test_what_stands_behind_a_table_is_named() -> None:
     with pytest.warns(mp.MotionWarning, match="something behind the last row"):
         assert mp.read(trc(markers()) + b"end of file\r\n").frames == 150
+
+
+@pytest.mark.parametrize("codec", ["patterns:arms=5mm", "diffma:bound=1"])
+def test_decoded_numbers_may_have_more_digits_than_those_of_the_file(
+    samples: Path, codec: str
+) -> None:
+    original = (samples / "markers.trc").read_bytes()
+    blob = mp.compress(samples / "markers.trc", codec)
+    assert len(blob) < len(original) / 5
+    back = mp.decompress(blob)
+    assert back.splitlines()[:5] == original.splitlines()[:5]
+    read = mp.read(back).values
+    np.testing.assert_allclose(read, mp.load(blob).values, rtol=1e-5, atol=1e-3)

@@ -41,6 +41,32 @@ def leaps() -> bytes:
     )
 
 
+def turning() -> bytes:
+    """Give a figure that leans while it turns round; its file has the heading as the last angle.
+
+    The middle angle is about 180 degrees: of the two ways to write a turn, the less usual one.
+    """
+    head = (
+        "HIERARCHY\nROOT hip\n{\nOFFSET 0 0 0\n"
+        "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
+        "JOINT arm\n{\nOFFSET 0 60 0\nCHANNELS 1 Zrotation\n"
+        "End Site\n{\nOFFSET 40 0 0\n}\n}\n}\nMOTION\nFrames: 160\nFrame Time: 0.0083333\n"
+    )
+    rows = []
+    for f in range(160):
+        heading, lean, roll = 0.05 * f, 0.3 * math.sin(f / 20), 0.25 * math.sin(f / 13)
+        ch, sh, cl, sl = math.cos(heading), math.sin(heading), math.cos(lean), math.sin(lean)
+        cr, sr = math.cos(roll), math.sin(roll)
+        # Of the matrix of heading, lean and roll, what the angles of the other order tell.
+        z = math.atan2(ch * sr - sh * sl * cr, cl * cr)
+        x = math.asin(sh * sr + ch * sl * cr)
+        y = math.atan2(sh * cr - ch * sl * sr, ch * cl)
+        y -= 2 * math.pi * round((y - heading) / (2 * math.pi))
+        angles = [math.degrees(a) for a in (z + math.pi, math.pi - x, y + math.pi)]
+        rows.append([0, 90, 0, *angles, 20 * math.sin(f / 30)])
+    return (head + "".join(" ".join(f"{v:.4f}" for v in row) + "\n" for row in rows)).encode()
+
+
 def recurring() -> dict[str, bytes]:
     """Give a take; a part of it that somebody has bent; and a part as it is, and more."""
     chance = random.Random(7)

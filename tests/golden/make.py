@@ -125,6 +125,12 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_couplings_near.bvh": (clips.couplings(), "near:quality=9,max=0.02", {}),
     "v1_numbers_near.bvh": (clips.numbers(), "near:max_error=0.01", {}),
     "v1_coarse_near.amc": (WALK_LF, "near:quality=1", {}),
+    "v1_turning_near.bvh": (clips.turning(), "near:max=0.1cm,chunk=80", {}),
+    "v1_skeleton_near.amc": (
+        clips.skeleton(),
+        "near:max=0.1cm,chunk=20",
+        {"asf_path": clips.SAMPLE.with_suffix(".asf")},
+    ),
     "v1_random.bin": (random.Random(1).randbytes(200), "exact", {}),
     "v1_oddities.bvh": (clips.oddities(), "exact:chunk=12", {}),
     "v1_disorder.amc": (clips.disorder(), "exact:chunk=10", {}),

@@ -9,7 +9,7 @@ ROOT = Path(__file__).parents[2]
 # Lines for broken files, for checkers of types, and of the command: regular expressions.
 OTHER = [
     "raise (CorruptError|ValueError)",
-    "except (BROKEN|CorruptError)",
+    r"except (BROKEN|CorruptError|\(\*BROKEN)",
     "break  # cut off",
     "if TYPE_CHECKING",
     "if __name__",

@@ -147,7 +147,9 @@ def _printed_parts(opened: Opened, original: Original) -> Iterator[bytes]:
             most = limits.most_printed(size, frames * columns)
         layout = layout_of(opened, original, frames)
     else:
-        sizes, most, layout = own.sizes, limits.most_printed(size, 0), own
+        sizes, layout = own.sizes, own
+        numbers = 0 if opened.codec().lossless else sum(rows * width for rows, width in sizes)
+        most = limits.most_printed(size, numbers)
     found = [
         (opened.frames(index), len(opened.streams[index].columns)) for index in range(len(sizes))
     ]
