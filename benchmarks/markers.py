@@ -47,7 +47,7 @@ def classes(path: Path, data: bytes) -> list[str]:
     found = ["C3D"]
     if path.name.startswith("HDM"):
         found.append("C3D, HDM05")
-    if not _core.c3d_layout(data)[1]:
+    if not _core.c3d_layout(data, len(data))[1]:
         found.append("C3D, integers")
     elif path.parent.name != _SAMPLES:
         found.append("C3D, floats of labs")
