@@ -180,6 +180,7 @@ def compress(
         facts["warning"] = "; ".join(filter(None, (facts.get("warning"), missed))) or None
         facts["largest_error"] = loss.most if loss else None
         facts["mean_error"] = loss.mean if loss else None
+        facts["largest_joint_error"] = loss.joints if loss else None
         facts["psnr"] = loss.psnr if loss and isfinite(loss.psnr) else None
         job.outputs[job.target] = blob
         job.remove = remove

@@ -12,6 +12,8 @@ def show_sizes(job: Job) -> None:
         errors = f"; lossy: largest error {lost:.3g}, mean {job.result['mean_error']:.3g}"
         if job.result["psnr"] is not None:
             errors += f", PSNR {job.result['psnr']:.1f} dB"
+        if (joints := job.result["largest_joint_error"]) is not None:
+            errors += f"; joints off by up to {joints:.3g} units of length"
     print(f"{job.target}: {_sizes([job])}{errors}")
 
 

@@ -1,16 +1,17 @@
 """What a lossy codec lost, measured on its decoder's output."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.codecs.contract import Codec
-from mocapress.errors import VerificationError
+from mocapress.errors import UnsupportedError, VerificationError
 from mocapress.motion import Clip, Column
 from mocapress.motion.comparing import errors_of
+from mocapress.motion.kinematics import positions
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +24,9 @@ class Loss:
     """Mean error of all finite values, each in its unit."""
     psnr: float
     """-10 log10 of the mean squared error over all finite values, dB; infinite without error."""
+    joints: float | None = None
+    """Largest distance of a joint from its place, in the clip's units of length; None where it is
+    not known. Angles may be far off that together turn a joint as before."""
 
     @classmethod
     def of(
@@ -80,7 +84,21 @@ def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss
                 expected=f"errors up to {bound:g}",
                 found=f"{error:g}",
             )
-    return Loss.of(clip.values, decoded, clip.columns)
+    return replace(
+        Loss.of(clip.values, decoded, clip.columns), joints=_largest_distance(clip, decoded)
+    )
+
+
+def _largest_distance(clip: Clip, decoded: NDArray[np.float64]) -> float | None:
+    """Give how far a joint is from its place at most; None where joints cannot be placed."""
+    if clip.skeleton is None or not clip.frames:
+        return None
+    try:
+        with np.errstate(all="ignore"):
+            apart = positions(clip) - positions(clip.with_values(decoded))
+    except UnsupportedError:
+        return None
+    return float(np.linalg.norm(apart, axis=-1).max()) if np.isfinite(apart).all() else None
 
 
 def missed_target(codec: Codec, loss: Loss) -> str | None:
