@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from mocapress.codecs.contract import Codec
 from mocapress.errors import UnsupportedError, VerificationError
 from mocapress.motion import Clip, Column
-from mocapress.motion.comparing import errors_of
-from mocapress.motion.kinematics import positions
+from mocapress.motion.comparing import distances_of, errors_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,10 +94,10 @@ def _largest_distance(clip: Clip, decoded: NDArray[np.float64]) -> float | None:
         return None
     try:
         with np.errstate(all="ignore"):
-            apart = positions(clip) - positions(clip.with_values(decoded))
+            distances = distances_of(clip, clip.with_values(decoded))
     except UnsupportedError:
         return None
-    return float(np.linalg.norm(apart, axis=-1).max()) if np.isfinite(apart).all() else None
+    return float(distances.max()) if np.isfinite(distances).all() else None
 
 
 def missed_target(codec: Codec, loss: Loss) -> str | None:

@@ -98,7 +98,7 @@ def compare(first: Clip, second: Clip) -> Difference:
     distances = None
     if first.skeleton and second.skeleton and first.skeleton.names == second.skeleton.names:
         joints = first.skeleton.names
-        distances = np.linalg.norm(positions(first) - positions(second), axis=2)
+        distances = distances_of(first, second)
     tied: tuple[str, ...] = ()
     drift = None
     if POINTS in first.streams and POINTS in second.streams:
@@ -121,6 +121,19 @@ def compare(first: Clip, second: Clip) -> Difference:
         None if drift is None else drift.max(axis=0, initial=0),
         None if drift is None else _mean(drift),
     )
+
+
+def distances_of(first: Clip, second: Clip) -> Array:
+    """Give how far the joints of two clips of one tree of joints are from each other, (F, J).
+
+    Raises
+    ------
+    UnsupportedError
+        When joints cannot be placed.
+
+    """
+    distances: Array = np.linalg.norm(positions(first) - positions(second), axis=2)
+    return distances
 
 
 def errors_of(original: Array, decoded: Array, columns: Sequence[Column] = ()) -> Array:

@@ -9,6 +9,7 @@ from scipy.ndimage import binary_closing, binary_opening
 
 from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.motion.clip import Clip
+from mocapress.motion.figure import size_of
 from mocapress.motion.kinematics import Array, positions
 
 Frames = NDArray[np.bool_]
@@ -117,7 +118,7 @@ def _standing(
     usable = np.asarray(np.isfinite(places).all(axis=(1, 2)))
     if not usable.any():
         return np.zeros(chosen.shape[:2], dtype=np.bool_)
-    size = float(np.quantile(np.ptp(places[usable], axis=1).max(axis=1), 0.95))
+    size = size_of(places[usable])
     up = upward(places[usable])
     levels = chosen[..., up] - np.quantile(chosen[usable][..., up], _LOWEST, axis=0)
     rates = np.zeros(chosen.shape)

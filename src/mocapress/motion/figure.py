@@ -48,7 +48,7 @@ def doubtful_root(clip: Clip) -> str | None:
     places = _places(clip)
     if places is None:
         return None
-    size = float(np.quantile(np.ptp(places, axis=1).max(axis=1), 0.95))
+    size = size_of(places)
     for axis, name in ((1, "y"), (2, "z")):
         offset = skeleton.joints[0].offset[axis]
         floor = float(np.median(places[:, :, axis].min(axis=1)))
@@ -60,12 +60,17 @@ def doubtful_root(clip: Clip) -> str | None:
     return None
 
 
-def _size(clip: Clip) -> float | None:
-    """Give how long the figure is in motion: it stands upright, or stretches, at some time."""
-    places = _places(clip)
-    if places is None:
-        return None
+def size_of(places: Array) -> float:
+    """Give how long a figure is that was in some places, (F, J, 3).
+
+    It stands upright, or stretches, at some time.
+    """
     return float(np.quantile(np.ptp(places, axis=1).max(axis=1), 0.95))
+
+
+def _size(clip: Clip) -> float | None:
+    places = _places(clip)
+    return None if places is None else size_of(places)
 
 
 def _places(clip: Clip) -> Array | None:

@@ -120,25 +120,23 @@ function isOfOneSpace({ bearings: a }, { bearings: b }) {
 /** Whether clips are of one time and place: as long as each other, and nobody stands in another. */
 function isOneScene(takes) {
   const [first] = takes;
-  return takes.every(
-    (take, i) =>
-      take.frames === first.frames &&
-      Math.abs(take.frameTime / first.frameTime - 1) < 1e-3 &&
-      takes.slice(0, i).every((other) => distance(take, other) > APART * USUAL_HEIGHT),
+  const isAsLong = (take) =>
+    take.frames === first.frames && Math.abs(take.frameTime / first.frameTime - 1) < 1e-3;
+  if (!takes.every(isAsLong)) return false;
+  for (const take of takes) take.standAs(first.bearings);
+  return takes.every((take, i) =>
+    takes.slice(0, i).every((other) => distance(take, other) > APART * USUAL_HEIGHT),
   );
 }
 
-/** Median distance of two roots on the stage of the first. */
+/** Median distance of the roots of two takes that are as long as each other and stand alike. */
 function distance(take, other) {
-  const own = other.bearings;
-  other.standAs(take.bearings);
   const [a, b] = [[], []];
   const distances = Float64Array.from({ length: take.frames }, (_, frame) => {
     take.rootOnStage(frame, a);
     other.rootOnStage(frame, b);
     return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
   }).sort();
-  other.standAs(own);
   return distances[distances.length >> 1];
 }
 
