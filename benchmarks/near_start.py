@@ -34,7 +34,7 @@ CURVES = {"root": 2, "rhumerus": 4, "lhumerus": 4, "rfemur": 1, "lfemur": 1}
 WEIGHTS = {"upperneck": 4.0, "lowerneck": 1.5, "head": 1.3, "lhumerus": 1.2, "rhumerus": 1.2}
 GROUP, SPAN, REACH = 64, 256, 6
 SOURCES = 20
-ASSUMED, ROUNDS = 50, 3
+ASSUMED, ROUNDS = 800, 3
 
 
 class Window:
@@ -131,20 +131,39 @@ def sources(window: Window) -> list[list[int]]:
     return found
 
 
-def waves_of(window: Window, steps: Values) -> Iterator[Values]:
-    """Give the waves of moves and averages of spans, (G, 63, 2, C), in steps, as if decoded."""
+def header_of(window: Window, exponents: NDArray[np.int64], scale: float, start: int) -> bytes:
+    """Give the header of a window at a scale in the file's units."""
+    relative = scale / window.size
+    base = round(log2(scale) * STEPS_PER_OCTAVE)
+    return pack_header(
+        True,
+        relative < 1.6e-4,
+        (0.0, 0.0),
+        6 if relative < 2e-4 else 4,
+        64 if relative < 4e-4 else 61,
+        [base + int(each) for each in exponents],
+        window.joints,
+        window.turnings,
+        start=start,
+        known=True,
+    )
+
+
+def waves_of(window: Window, exponents: NDArray[np.int64], scale: float, start: int) -> Iterator[Values]:
+    """Give the waves of moves and averages of spans, (G, 63, 2, C), in steps, as decoded."""
     k, t = np.mgrid[0:GROUP, 0:GROUP]
     cosines = np.sqrt(2 / GROUP) * np.cos(np.pi * k * (2 * t + 1) / (2 * GROUP))
-    cosines[0] /= np.sqrt(2)
-    values = window.turned / steps
-    frames = len(values) // GROUP * GROUP
-    groups = values[:frames].reshape(-1, GROUP, values.shape[1])
-    waves = np.einsum("kt,gtc->gkc", cosines, groups)
-    waves[:, 1:] = np.sign(waves[:, 1:]) * np.floor(np.abs(waves[:, 1:]) + 0.35)
-    drawn = np.einsum("kt,gkc->gtc", cosines, waves).reshape(frames, -1)
+    header = header_of(window, exponents, scale, start)
+    _, decoded, _ = _core.near_encode(
+        window.measure.core, window.curves, window.values, header, scale, 0.12,
+        np.ones(window.measure.points), inf, np.full(window.values.shape[1], inf), 0,
+    )
+    drawn = _core.near_turned(window.measure.core, decoded, window.turnings)
+    drawn /= 2.0 ** ((round(log2(scale) * STEPS_PER_OCTAVE) + exponents) / STEPS_PER_OCTAVE)
+    frames = len(drawn) // GROUP * GROUP
     triangle = np.array([*range(1, REACH + 2), *range(REACH, 0, -1)]) / (REACH + 1) ** 2
     for first in range(0, frames, SPAN):
-        span = drawn[first : first + SPAN]
+        span = drawn[first : min(first + SPAN, frames)]
         before = np.repeat(drawn[[max(0, first - 1)]], REACH, axis=0)
         if first:
             before = drawn[first - REACH : first]
@@ -156,13 +175,16 @@ def waves_of(window: Window, steps: Values) -> Iterator[Values]:
 
 
 def assumed(
-    all_windows: Sequence[Window], exponents: NDArray[np.int64], scales: Sequence[float]
+    all_windows: Sequence[Window],
+    exponents: NDArray[np.int64],
+    scales: Sequence[float],
+    start: int,
 ) -> list[tuple[int, int, float, float, float, float, float]]:
     """Learn how columns foretell each other: see NearLearning."""
     waves: list[Values] = []
     for i, window in enumerate(all_windows):
         scale = scales[i % len(scales)] / window.unit
-        waves += waves_of(window, scale * 2.0 ** (exponents / STEPS_PER_OCTAVE))
+        waves += waves_of(window, exponents, scale, start)
     whole = np.concatenate(waves)
     moving = (whole[:, :, 0] != 0).any(axis=(0, 1))
     told = []
@@ -205,18 +227,7 @@ def learned(
     learning = _core.NearLearning(told)
     for i, window in enumerate(all_windows):
         scale = scales[i % len(scales)] / window.unit
-        relative = scale / window.size
-        base = round(log2(scale) * STEPS_PER_OCTAVE)
-        header = pack_header(
-            True,
-            relative < 4e-3,
-            (0.0, 0.0),
-            6 if relative < 2e-4 else 4,
-            64 if relative < 4e-4 else 61,
-            [base + int(each) for each in exponents],
-            window.joints,
-            window.turnings,
-        )
+        header = header_of(window, exponents, scale, 0)
         learning.learn(window.measure.core, window.curves, window.values, header, scale, 0.12)
     return bytes(learning.pack())
 
@@ -231,9 +242,9 @@ def main(argv: Sequence[str] | None = None) -> None:
     all_windows = list(windows(asked.corpus))
     print(len(all_windows), "windows,", sum(len(each.values) for each in all_windows), "frames")
     exponents = figure(all_windows, asked.folder)
-    for name, scales in SCALES.items():
+    for start, (name, scales) in enumerate(SCALES.items(), 1):
         if asked.only in (None, name):
-            told = assumed(all_windows, exponents, scales)
+            told = assumed(all_windows, exponents, scales, start)
             packed = learned(all_windows, exponents, scales, told)
             write(asked.folder / f"start_{name}_1.txt", list(packed), 24)
 

@@ -13,7 +13,7 @@ namespace mocapress::near {
 namespace {
 
 constexpr std::size_t kMostSources = 20;
-constexpr double kAssumed = 50;  // observations that count as seen where a start is known
+constexpr double kAssumed = 200;  // observations that count as seen where a start is known
 constexpr double kFade = 0.95;   // of what was seen, in a span
 
 // sqrt(2 / 64) cos(pi k (t + 1/2) / 64) at [64 (k - 1) + t].

@@ -79,7 +79,7 @@ void code_models(Side& side, Notes& notes, Models& models, bool by_channel) {
   code(models.signs, kSignsByChannel);
 }
 
-// Shares in 1/32, products as powers of 2^(1/4), and how far the features are the same in 1/64.
+// Shares in 1/64, products as powers of 2^(1/4), and how far the features are the same in 1/64.
 class AssumedNotes {
  public:
   template <class Side>
@@ -95,8 +95,8 @@ class AssumedNotes {
       source_ += places_.code(side, one.source - source_);
       one.channel = channel;
       one.source = source_;
-      number(side, shares_[0], one.shares[0], 32);
-      number(side, shares_[1], one.shares[1], 32);
+      number(side, shares_[0], one.shares[0], 64);
+      number(side, shares_[1], one.shares[1], 64);
       number(side, products_[0], one.moved, 1);
       number(side, products_[1], one.averaged, 1);
       number(side, both_, one.both, 64);
