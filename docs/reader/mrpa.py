@@ -58,8 +58,8 @@ def chunk_columns(
     if frames and not pieces:
         limit = record.integer()
         coded = record.raw(len(payload) - record.at)
-        alphas = app.TABLES["k3-non-uniform"]
-        found = app.chunk_columns(coded, frames, parents, precisions, alphas, 15, limit)
+        table = app.TABLES["k3-non-uniform"]
+        found = app.chunk_columns(coded, frames, parents, precisions, table, 15, limit)
         return [found[c] for c in range(len(precisions))]
     if sum(count for count, _ in pieces) != frames:
         raise CorruptError("the pieces are not the frames of the chunk")
