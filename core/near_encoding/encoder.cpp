@@ -225,8 +225,8 @@ class Encoding {
 
   // The largest error of a point, without a rig of a value.
   double bound_of(std::size_t point) const {
-    if (measure_.rig) return task_.most;
-    return std::min(task_.most, task_.value_most[point] * measure_.others[point]);
+    if (measure_.rig) return task_.most[point];
+    return std::min(task_.most[point], task_.value_most[point] * measure_.others[point]);
   }
 
   bool within(const double* errors) const {

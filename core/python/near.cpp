@@ -90,13 +90,14 @@ Given<double, 2> errors(const near::Measure& measure, const Input<double, 2>& va
 std::tuple<nb::bytes, Given<double, 2>, Given<double, 2>> encode(
     const near::Measure& measure, const near::Measure& curves, const Input<double, 2>& values,
     const nb::bytes& header, double scale, double rate, const Input<double, 1>& weights,
-    double most, const Input<double, 1>& value_most, int rounds) {
+    const Input<double, 1>& most, const Input<double, 1>& value_most, int rounds) {
   const std::size_t frames = values.shape(0), channels = values.shape(1);
+  const std::size_t points = measure.points(channels);
   const near::Task task{near::read_header(view(header), channels),
                         scale,
                         rate,
-                        vector_of(weights, measure.points(channels)),
-                        most,
+                        vector_of(weights, points),
+                        vector_of(most, points),
                         vector_of(value_most, channels),
                         rounds};
   near::Coded coded;
@@ -104,7 +105,6 @@ std::tuple<nb::bytes, Given<double, 2>, Given<double, 2>> encode(
     const nb::gil_scoped_release unlocked;
     coded = near::encode(values.data(), frames, task, measure, curves);
   }
-  const std::size_t points = measure.points(channels);
   return {to_python(coded.payload), give(std::move(coded.values), std::array{frames, channels}),
           give(std::move(coded.errors), std::array{frames, points})};
 }

@@ -14,6 +14,8 @@ def show_sizes(job: Job) -> None:
             errors += f", PSNR {job.result['psnr']:.1f} dB"
         if (joints := job.result["largest_joint_error"]) is not None:
             errors += f"; joints off by up to {joints:.3g} units of length"
+            parts = job.result["largest_joint_error_of"]
+            errors += "".join(f", {part} by {most:.3g}" for part, most in parts.items())
     print(f"{job.target}: {_sizes([job])}{errors}")
 
 

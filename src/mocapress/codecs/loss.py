@@ -1,7 +1,7 @@
 """What a lossy codec lost, measured on its decoder's output."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
@@ -26,6 +26,8 @@ class Loss:
     joints: float | None = None
     """Largest distance of a joint from its place, in the clip's units of length; None where it is
     not known. Angles may be far off that together turn a joint as before."""
+    parts: Mapping[str, float] = field(default_factory=dict)
+    """The same of parts of the body that have bounds of their own."""
 
     @classmethod
     def of(
@@ -56,11 +58,14 @@ class Loss:
     def notes(self) -> dict[str, str]:
         """Give what a file says of what it lost, as its notes."""
         facts = zip(LOSS_NOTES, (self.most, self.mean, self.psnr), strict=True)
-        return {key: f"{value:.6g}" for key, value in facts}
+        notes = {key: f"{value:.6g}" for key, value in facts}
+        return notes | {f"{LARGEST_OF}{part}": f"{most:.6g}" for part, most in self.parts.items()}
 
 
 LOSS_NOTES = ("largest_error", "mean_error", "psnr")
 """Keys of the notes in which a lossy file says what it lost."""
+LARGEST_OF = "largest_joint_error_of_"
+"""Before the name of a part of the body, the key of a note that says how far its joints are off."""
 
 
 def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss:
@@ -83,13 +88,18 @@ def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss
                 expected=f"errors up to {bound:g}",
                 found=f"{error:g}",
             )
-    return replace(
-        Loss.of(clip.values, decoded, clip.columns), joints=_largest_distance(clip, decoded)
-    )
+    loss = Loss.of(clip.values, decoded, clip.columns)
+    largest = _largest_distances(clip, decoded)
+    if largest is None or clip.skeleton is None:
+        return loss
+    parts = {
+        part: float(largest[joints].max()) for part, joints in codec.parts_of(clip.skeleton).items()
+    }
+    return replace(loss, joints=float(largest.max(initial=0)), parts=parts)
 
 
-def _largest_distance(clip: Clip, decoded: NDArray[np.float64]) -> float | None:
-    """Give how far a joint is from its place at most; None where joints cannot be placed."""
+def _largest_distances(clip: Clip, decoded: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """Give how far each joint is from its place at most, (J,); None where they have no places."""
     if clip.skeleton is None or not clip.frames:
         return None
     try:
@@ -97,7 +107,8 @@ def _largest_distance(clip: Clip, decoded: NDArray[np.float64]) -> float | None:
             distances = distances_of(clip, clip.with_values(decoded))
     except UnsupportedError:
         return None
-    return float(distances.max()) if np.isfinite(distances).all() else None
+    largest: NDArray[np.float64] = distances.max(axis=0)
+    return largest if np.isfinite(largest).all() else None
 
 
 def missed_target(codec: Codec, loss: Loss) -> str | None:

@@ -23,6 +23,7 @@ from mocapress.codecs.contract import (
 from mocapress.codecs.near.encoding import Encoder
 from mocapress.codecs.near.goal import Goal, goal_of
 from mocapress.codecs.near.header import unpack_errors
+from mocapress.codecs.near.parts import amounts, joints_of_parts
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.units import amount
@@ -58,11 +59,16 @@ class Near(Codec):
     """Largest error of any value, in the unit of its channel; instead of all others."""
     chunk: int = 4096
     """Frames that are decoded together."""
+    parts: str = ""
+    """Largest errors of joints and parts of the body that have their own: ``feet=0.02cm,head=1mm``.
+    """
+    rest: ClassVar[str] = "parts"
 
     def __post_init__(self) -> None:
         for name in ("max", "mean", "p"):
             if getattr(self, name):
                 amount(getattr(self, name), f"near:{name}")
+        amounts(self.parts)
         if self.p and (self.max or self.mean):
             raise ParameterError("near:p", expected="neither max nor mean beside it")
         if not isinstance(self.quality, int) or self.quality not in _QUALITIES:
@@ -77,12 +83,20 @@ class Near(Codec):
     def goal(self, skeleton: Skeleton | None, columns: Sequence[Column]) -> Goal:
         """Give what is asked of clips with this skeleton and these columns."""
         if self.max_error < inf:
+            if self.parts:
+                raise ParameterError("near:max_error", expected="no bounds of parts beside it")
             return Goal(False, max(self.max_error / 3, 1e-9), inf)
         most, mean, precision = (
             amount(text, "near") if text else None for text in (self.max, self.mean, self.p)
         )
         return goal_of(
-            skeleton, columns, most=most, mean=mean, precision=precision, quality=self.quality
+            skeleton,
+            columns,
+            most=most,
+            mean=mean,
+            precision=precision,
+            quality=self.quality,
+            parts=amounts(self.parts),
         )
 
     def encode(
@@ -133,6 +147,10 @@ class Near(Codec):
     def largest_errors(self, columns: Sequence[Column]) -> list[float]:
         """Give the error up to which each column may come back; infinite where none was asked."""
         return [self.max_error] * len(columns)
+
+    def parts_of(self, skeleton: Skeleton) -> dict[str, list[int]]:
+        """Give the joints of each part that has a bound of its own."""
+        return joints_of_parts(skeleton, amounts(self.parts))
 
     def measure(self, clip: Clip, encoded: Encoded, raw_bytes: int) -> dict[str, float]:
         """Give the errors that the encoder found: of joints, in units of length, or of values."""

@@ -1,10 +1,11 @@
 """What was asked of the errors, in the units of a clip."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite, radians
 
 from mocapress import _core
+from mocapress.codecs.near.parts import joints_of_parts
 from mocapress.errors import ParameterError
 from mocapress.motion import Column, Skeleton
 from mocapress.motion.units import (
@@ -40,6 +41,11 @@ class Goal:
     radius: float = 0.0
     size: float = 1.0
     """Of the figure; 1 where errors are not in space."""
+    of_joints: tuple[tuple[int, float], ...] = ()
+    """Largest errors of joints that have their own instead of ``most``."""
+    is_mean_asked: bool = False
+    """Whether the mean is to be that of all errors as they are; otherwise, where joints have bounds
+    of their own, each error counts beside its bound."""
 
 
 def goal_of(
@@ -50,13 +56,15 @@ def goal_of(
     mean: Amount | None,
     precision: Amount | None,
     quality: int,
+    parts: Mapping[str, Amount],
 ) -> Goal:
-    """Give the goal for clips of a skeleton.
+    """Give the goal for clips of a skeleton; ``parts`` have largest errors of their own.
 
     Raises
     ------
     ParameterError
-        When a length is asked for, and nothing says how long the units of the file are.
+        When a length is asked for, and nothing says how long the units of the file are. When errors
+        of parts cannot be measured, or are asked of a part that the skeleton does not have.
 
     """
     asked = [each for each in (most, mean, precision) if each is not None]
@@ -64,6 +72,11 @@ def goal_of(
     stretched = any(column.kind == "l" for column in columns)  # has no kinematics here
     in_space = isfinite(size) and size > 0 and not stretched
     in_space = in_space and not any(each.is_angle for each in asked)
+    if parts and (not in_space or any(each.is_angle for each in parts.values())):
+        raise ParameterError(
+            f"near:{next(iter(parts))}: a part of the body has a bound in space only",
+            expected="a clip with a skeleton, and lengths, such as 0.02cm",
+        )
     if not in_space:
         size = 1.0
     unit = centimetres_per_unit(skeleton) if skeleton and in_space else None
@@ -88,13 +101,25 @@ def goal_of(
         fine = 10.0 ** ((1 - quality) / 4)
         precision = Amount(fine / _HEIGHT * size if in_space else fine, "")
     largest = own(most) if most else own(precision) * MOST_OF_PRECISION if precision else inf
+    of_joints = _of_joints(skeleton, {part: own(each) for part, each in parts.items()})
     if mean:
         middle = own(mean)
     elif precision:
         middle = own(precision) * MEAN_OF_PRECISION
     else:
         middle = largest * MEAN_OF_MOST
-    return Goal(in_space, middle, largest, radius, size)
+    return Goal(in_space, middle, largest, radius, size, of_joints, mean is not None)
+
+
+def _of_joints(
+    skeleton: Skeleton | None, parts: Mapping[str, float]
+) -> tuple[tuple[int, float], ...]:
+    """Give the bound of every joint that has one of its own: the smallest of its parts."""
+    found: dict[int, float] = {}
+    if skeleton is not None:
+        for part, joints in joints_of_parts(skeleton, parts).items():
+            found |= {joint: min(found.get(joint, inf), parts[part]) for joint in joints}
+    return tuple(sorted(found.items()))
 
 
 class Measure:
