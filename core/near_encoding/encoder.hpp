@@ -18,6 +18,7 @@ struct Task {
   std::vector<double> weights;     // of the points that errors are measured at
   std::vector<double> most;        // error of each point; infinite for no bound
   std::vector<double> value_most;  // error of any value, by channel; infinite for no bound
+  std::vector<bool> kept;          // of values that must come back as they are; none: all may move
   int rounds = 3;                  // of coding again what is above a bound, before it is corrected
 };
 

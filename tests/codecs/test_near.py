@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 import mocapress as mp
 from mocapress.codecs import Codec
+from mocapress.codecs.near.figure import figure_of
 from mocapress.codecs.near.goal import goal_of
 from mocapress.describe import describe_mcz
 from mocapress.errors import ParameterError
@@ -356,11 +357,12 @@ def test_bounds_that_are_no_amounts_are_refused() -> None:
 
 def test_amounts_become_units_of_the_file(samples: Path) -> None:
     clip = mp.read(samples / "cmu_01_01.amc")
+    figure = figure_of(clip.skeleton, clip.columns, clip.values)
     asked: dict[str, Amount | None] = {"most": amount("1cm", ""), "mean": None, "precision": None}
-    goal = goal_of(clip.skeleton, clip.columns, **asked, quality=5, parts={})
+    goal = goal_of(figure, **asked, quality=5, parts={})
     assert goal.most == pytest.approx(1 / CMU)
     assert goal.radius == pytest.approx(3 / CMU)
     mean: dict[str, Amount | None] = {"most": None, "mean": amount("0.5mm", ""), "precision": None}
-    goal = goal_of(clip.skeleton, clip.columns, **mean, quality=5, parts={})
+    goal = goal_of(figure, **mean, quality=5, parts={})
     assert goal.mean == pytest.approx(0.05 / CMU)
     assert goal.most == inf

@@ -258,8 +258,8 @@ class Codec(ABC):
         """Give the error up to which each column may come back; infinite where none was asked."""
         return [0.0 if self.lossless else inf] * len(columns)
 
-    def parts_of(self, skeleton: Skeleton) -> dict[str, list[int]]:
-        """Give the parts of the body that have bounds of their own: name -> joints."""
+    def parts_of(self, clip: Clip) -> dict[str, list[int]]:
+        """Give the parts of the body that have bounds of their own: name -> joints, or markers."""
         return {}
 
     def measure(self, clip: Clip, encoded: Encoded, raw_bytes: int) -> dict[str, float]:

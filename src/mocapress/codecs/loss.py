@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.codecs.contract import Codec
+from mocapress.codecs.markers import markers_of
 from mocapress.errors import UnsupportedError, VerificationError
 from mocapress.motion import Clip, Column
 from mocapress.motion.comparing import distances_of, errors_of
@@ -26,6 +27,8 @@ class Loss:
     joints: float | None = None
     """Largest distance of a joint from its place, in the clip's units of length; None where it is
     not known. Angles may be far off that together turn a joint as before."""
+    markers: float | None = None
+    """Largest distance of a marker from its place."""
     parts: Mapping[str, float] = field(default_factory=dict)
     """The same of parts of the body that have bounds of their own."""
 
@@ -90,17 +93,23 @@ def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss
             )
     loss = Loss.of(clip.values, decoded, clip.columns)
     largest = _largest_distances(clip, decoded)
-    if largest is None or clip.skeleton is None:
+    if largest is None:
         return loss
-    parts = {
-        part: float(largest[joints].max()) for part, joints in codec.parts_of(clip.skeleton).items()
-    }
-    return replace(loss, joints=float(largest.max(initial=0)), parts=parts)
+    most = float(largest.max(initial=0))
+    parts = {part: float(largest[joints].max()) for part, joints in codec.parts_of(clip).items()}
+    if clip.skeleton is None:
+        return replace(loss, markers=most, parts=parts)
+    return replace(loss, joints=most, parts=parts)
 
 
 def _largest_distances(clip: Clip, decoded: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """Give how far each joint is from its place at most, (J,); None where they have no places."""
-    if clip.skeleton is None or not clip.frames:
+    """Give how far each joint, or each marker, is from its place at most, (J,).
+
+    None where they have no places; a marker that is missing is nowhere.
+    """
+    if clip.skeleton is None:
+        return _distances_of_markers(clip, decoded)
+    if not clip.frames:
         return None
     try:
         with np.errstate(all="ignore"):
@@ -109,6 +118,19 @@ def _largest_distances(clip: Clip, decoded: NDArray[np.float64]) -> NDArray[np.f
         return None
     largest: NDArray[np.float64] = distances.max(axis=0)
     return largest if np.isfinite(largest).all() else None
+
+
+def _distances_of_markers(clip: Clip, decoded: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    markers = markers_of(clip.columns)
+    if not markers.first:
+        return None
+    with np.errstate(all="ignore"):
+        moved = markers.places(decoded) - markers.places(clip.values)
+        distances = np.sqrt((moved * moved).sum(axis=2))
+    largest: NDArray[np.float64] = np.where(np.isfinite(distances), distances, 0).max(
+        axis=0, initial=0
+    )
+    return largest
 
 
 def missed_target(codec: Codec, loss: Loss) -> str | None:

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.codecs.contract import Chunk, Encoded
+from mocapress.codecs.markers import kept_of
+from mocapress.codecs.near.figure import figure_of, tree_of
 from mocapress.codecs.near.goal import MEAN_OF_MOST, Goal, Measure
 from mocapress.codecs.near.header import COARSE, STEPS_PER_OCTAVE, joints_of, pack_header
 from mocapress.codecs.near.turning import Turning, is_known, known_turnings, nearest, turnings_of
@@ -63,14 +65,22 @@ class Encoder:
     ) -> None:
         self.goal, self.chunk = goal, chunk
         self.values = np.ascontiguousarray(stream.values, dtype=np.float64)
-        self.measure = Measure(goal, skeleton, stream.columns)
+        figure = figure_of(skeleton, stream.columns, self.values)
+        self.measure = Measure(goal, figure, stream.columns)
         self.value_most = np.full(stream.channels, max_error)
+        if figure and goal.in_space:  # what moves no joint counts as a part of the figure's size
+            moving = [figure.moves(column) for column in figure.columns]
+            self.value_most[~np.array(moving, bool)] = min(max_error, goal.most / goal.size)
+        self.kept = np.zeros(self.values.shape, np.uint8)
         self.most = np.full(self.measure.points, goal.most)
         self.shares = self._shares(skeleton)
         self.parts = self._parts()
         self.weights = self.parts**-2
         self.joints = joints_of(stream.columns, skeleton)
         self.columns = stream.columns
+        if figure and figure.markers and goal.in_space:
+            self.joints = joints_of(figure.columns, tree_of(figure, self.values))
+            self.kept = kept_of(figure.markers, self.values).astype(np.uint8)
         self.rate, self.starts = _RATE, goal.in_space
         turns = goal.in_space and max_error == inf
         known = turns and self.parts.min(initial=1) >= 1  # its steps are too coarse for closer ones
@@ -210,6 +220,7 @@ class Encoder:
             self.weights,
             most,
             self.value_most,
+            self.kept[first : first + self.chunk],
             3,
         )
         return payload, errors

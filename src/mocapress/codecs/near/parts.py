@@ -69,7 +69,7 @@ def _joints(skeleton: Skeleton, name: str) -> list[int]:
         )
         raise ParameterError(
             f"near:{name}: {what}",
-            expected=f"one of {', '.join(_TOPS)}, or a joint of {_some(skeleton.names)}",
+            expected=f"one of {', '.join(_TOPS)}, or a joint or marker of {_some(skeleton.names)}",
             found=name,
         )
     within = {known[top] for top in tops}
