@@ -252,7 +252,8 @@ def _spread(apart: Array) -> Array:
     most = min(_AROUND, len(apart) // 3)
     if not most:
         return np.ones(len(apart))
-    return np.maximum(np.sort(apart, axis=1)[:, 1 : most + 1].mean(axis=1), 1 / _SIGNED)
+    spread: Array = np.sort(apart, axis=1)[:, 1 : most + 1].mean(axis=1)
+    return np.maximum(spread, 1 / _SIGNED)
 
 
 def _alignments(wanted: Features, others: Sequence[Features]) -> Array:
