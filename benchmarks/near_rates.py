@@ -26,7 +26,7 @@ from mocapress.codecs.near.goal import Goal
 from mocapress.motion.units import centimetres_per_unit, figure_size
 from mocapress_bench.tables import markdown
 
-CLIPS = ("01_01", "05_05", "49_02", "60_01", "141_01")
+CLIPS = ("01_01", "05_05", "16_15", "49_02", "60_01", "09_01", "35_01", "141_01")
 """Of subjects that near_start.py leaves out."""
 PRECISIONS = (0.01, 0.05, 0.1, 0.3, 1.0)
 HEADER = (
@@ -89,7 +89,7 @@ def row(path: Path, precision: float, rival: Rival, tight: bool, chunk: int) -> 
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """Measure, and print a row for each clip and precision, then all clips together."""
+    """Measure, and print a row for each clip and precision, then long and short clips together."""
     parser = argparse.ArgumentParser()
     parser.add_argument("corpus", type=Path)
     parser.add_argument("--clips", default=",".join(CLIPS))
@@ -100,16 +100,19 @@ def main(argv: Sequence[str] | None = None) -> None:
     found = rivals()
     rows = []
     for precision in map(float, told.p.split(",")):
-        own, others = 0, 0
+        sums = {"**400 frames and more**": [0, 0], "**shorter**": [0, 0]}
         for name in told.clips.split(","):
             path = next(told.corpus.rglob(f"{name}.amc"))
             rival = found[name, precision]
             rows.append(row(path, precision, rival, told.tight, told.chunk))
-            own, others = own + int(rows[-1][2]), others + rival.size
-        blanks = [""] * (len(HEADER) - 4)
-        rows.append(
-            ["**together**", f"{precision:g}", f"{own}", f"**{own / others:.4f}**", *blanks]
-        )
+            own = sums["**400 frames and more**" if rival.frames >= 400 else "**shorter**"]
+            own[0], own[1] = own[0] + int(rows[-1][2]), own[1] + rival.size
+        for label, (size, others) in sums.items():
+            if others:
+                rows.append(
+                    [label, f"{precision:g}", f"{size}", f"**{size / others:.4f}**"]
+                    + [""] * (len(HEADER) - 4)
+                )
     print(markdown(list(HEADER), rows), end="")
 
 

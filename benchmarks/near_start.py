@@ -35,7 +35,9 @@ CURVES = {"root": 2, "rhumerus": 4, "lhumerus": 4, "rfemur": 1, "lfemur": 1}
 WEIGHTS = {"upperneck": 4.0, "lowerneck": 1.5, "head": 1.3, "lhumerus": 1.2, "rhumerus": 1.2}
 GROUP, SPAN, REACH = 64, 256, 6
 SOURCES = 20
-ASSUMED, ROUNDS = 800, 3
+WORTH = {"fine": 50, "middling": 200, "coarse": 50}
+"""Observations that count as seen."""
+CAUTION, ROUNDS = 1 / 800, 3
 
 
 class Window:
@@ -158,8 +160,17 @@ def waves_of(window: Window, exponents: NDArray[np.int64], scale: float, start: 
     cosines = np.sqrt(2 / GROUP) * np.cos(np.pi * k * (2 * t + 1) / (2 * GROUP))
     header = header_of(window, exponents, scale, start)
     _, decoded, _ = _core.near_encode(
-        window.measure.core, window.curves, window.values, header, scale, 0.12,
-        np.ones(window.measure.points), inf, np.full(window.values.shape[1], inf), 0,
+        window.measure.core,
+        window.curves,
+        window.values,
+        header,
+        scale,
+        0.12,
+        np.ones(window.measure.points),
+        np.full(window.measure.points, inf),
+        np.full(window.values.shape[1], inf),
+        np.zeros(window.values.shape, np.uint8),
+        0,
     )
     drawn = _core.near_turned(window.measure.core, decoded, window.turnings)
     drawn /= 2.0 ** ((round(log2(scale) * STEPS_PER_OCTAVE) + exponents) / STEPS_PER_OCTAVE)
@@ -209,7 +220,8 @@ def assumed(
             count = weights.size
             products = np.einsum("gka,gkb->ab", weighed, features, optimize=True) / count
             targets = np.einsum("gka,gk->a", weighed, wanted) / count
-            shares = np.linalg.solve(ASSUMED * products + np.eye(len(shares)), ASSUMED * targets)
+            ridge = CAUTION * np.eye(len(shares))
+            shares = np.linalg.solve(products + ridge, targets)
         for i, source in enumerate(used):
             one, other = products[2 * i, 2 * i], products[2 * i + 1, 2 * i + 1]
             if min(one, other) < 1e-6:
@@ -225,9 +237,10 @@ def learned(
     exponents: NDArray[np.int64],
     scales: Sequence[float],
     told: Sequence[tuple[int, int, float, float, float, float, float]],
+    worth: int,
 ) -> bytes:
     """Code the windows one after the other, and give what was learned."""
-    learning = _core.NearLearning(told)
+    learning = _core.NearLearning(told, worth)
     for i, window in enumerate(all_windows):
         scale = scales[i % len(scales)] / window.unit
         header = header_of(window, exponents, scale, 0)
@@ -248,7 +261,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     for start, (name, scales) in enumerate(SCALES.items(), 1):
         if asked.only in (None, name):
             told = assumed(all_windows, exponents, scales, start)
-            packed = learned(all_windows, exponents, scales, told)
+            packed = learned(all_windows, exponents, scales, told, WORTH[name])
             write(asked.folder / f"start_{name}_1.txt", list(packed), 24)
 
 

@@ -13,8 +13,7 @@ namespace mocapress::near {
 namespace {
 
 constexpr std::size_t kMostSources = 20;
-constexpr double kAssumed = 200;  // observations that count as seen where a start is known
-constexpr double kFade = 0.95;   // of what was seen, in a span
+constexpr double kFade = 0.95;  // of what was seen, in a span
 
 // sqrt(2 / 64) cos(pi k (t + 1/2) / 64) at [64 (k - 1) + t].
 const std::vector<double>& cosines() {
@@ -111,7 +110,8 @@ Prediction::Prediction(std::vector<std::vector<std::size_t>> sources,
   }
 }
 
-void Prediction::assume(const std::vector<Assumed>& all, const std::vector<std::size_t>& columns) {
+void Prediction::assume(const std::vector<Assumed>& all, double observations,
+                        const std::vector<std::size_t>& columns) {
   if (all.empty()) return;
   const auto before = [](const Assumed& one, const std::array<std::size_t, 2>& place) {
     return std::array{one.channel, one.source} < place;
@@ -125,7 +125,7 @@ void Prediction::assume(const std::vector<Assumed>& all, const std::vector<std::
       const auto found = std::lower_bound(all.begin(), all.end(), place, before);
       if (found == all.end() || std::array{found->channel, found->source} != place) continue;
       const double ratio = channels_[source].step / own.step;
-      const double square = kAssumed * (ratio * ratio), once = kAssumed * ratio;
+      const double square = observations * (ratio * ratio), once = observations * ratio;
       const auto& [one, other] = found->shares;
       own.products[a * m + a] = square * found->moved;
       own.products[(a + 1) * m + a] = square * found->both;
@@ -134,7 +134,7 @@ void Prediction::assume(const std::vector<Assumed>& all, const std::vector<std::
       own.targets[a + 1] = once * (found->both * one + found->averaged * other);
     }
   }
-  seen_ = kAssumed;
+  seen_ = observations;
   caution_ = 0;
 }
 

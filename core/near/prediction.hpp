@@ -33,8 +33,9 @@ class Prediction {
   Prediction(std::vector<std::vector<std::size_t>> sources, const std::vector<double>& steps,
              const std::vector<double>& firsts, double caution);
 
-  // Begins as if this had been seen; channels are columns.
-  void assume(const std::vector<Assumed>& all, const std::vector<std::size_t>& columns);
+  // Begins as if this had been seen in so many observations; channels are columns.
+  void assume(const std::vector<Assumed>& all, double observations,
+              const std::vector<std::size_t>& columns);
 
   void begin_span(int length);
   // Of channel i in the frames of the span, when those before it are told.

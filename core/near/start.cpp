@@ -83,7 +83,8 @@ void code_models(Side& side, Notes& notes, Models& models, bool by_channel) {
 class AssumedNotes {
  public:
   template <class Side>
-  void code(Side& side, std::vector<Assumed>& all) {
+  void code(Side& side, std::vector<Assumed>& all, std::uint64_t& observations) {
+    observations = counts_.code(side, observations);
     std::uint64_t count = all.size();
     count = counts_.code(side, count);
     if constexpr (Side::kReading) all.resize(std::min<std::uint64_t>(count, 1 << 16));
@@ -123,7 +124,7 @@ void code_start(Side& side, Start& start, bool known) {
   code_models(side, notes, start.models, false);
   if (!known) return;
   code_models(side, notes, start.models, true);
-  AssumedNotes().code(side, start.assumed);
+  AssumedNotes().code(side, start.assumed, start.observations);
 }
 
 template <int kIndex, bool kKnown>

@@ -14,7 +14,8 @@ namespace mocapress::near {
 
 struct Start {
   Models models;
-  std::vector<Assumed> assumed;  // by channel and source
+  std::vector<Assumed> assumed;    // by channel and source
+  std::uint64_t observations = 0;  // that these are worth
 };
 
 inline constexpr int kStarts = 3;  // for fine, middling and coarse scales

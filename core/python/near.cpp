@@ -252,12 +252,13 @@ nb::bytes columns(std::vector<std::int64_t> apart, std::vector<std::int32_t> joi
 // What is being learned for the start of coders.
 struct Learning {
   std::vector<near::Assumed> told;
+  std::uint64_t observations;
   near::Start start;
 
   // Of each: channel, source, two shares; products as powers of 2^(1/4), and how far they are one.
   using Told = std::tuple<std::size_t, std::size_t, double, double, double, double, double>;
 
-  explicit Learning(const std::vector<Told>& all) {
+  Learning(const std::vector<Told>& all, std::uint64_t worth) : observations(worth) {
     for (const auto& [channel, source, share, other, moved, averaged, both] : all) {
       told.push_back({channel, source, {share, other}, moved, both, averaged});
     }
@@ -268,6 +269,7 @@ struct Learning {
   Bytes pack_all() const {
     near::Start whole = start;
     whole.assumed = told;
+    whole.observations = observations;
     return near::pack(whole);
   }
 
@@ -312,8 +314,10 @@ void bind_near(nb::module_& module) {
   module.def("near_columns", &columns, nb::arg("apart"), nb::arg("joints"), nb::arg("parents"),
              nb::arg("turnings"), "Code what columns have of their own, for the header.");
   nb::class_<Learning>(module, "NearLearning", "Learns what coders of `near` begin with.")
-      .def(nb::init<const std::vector<Learning::Told>&>(), nb::arg("assumed"),
-           "Of each: channel, source, two shares, and the products of their features.")
+      .def(nb::init<const std::vector<Learning::Told>&, std::uint64_t>(), nb::arg("assumed"),
+           nb::arg("observations"),
+           "Of each: channel, source, two shares, and the products of their features; and how many\n"
+           "observations these are worth.")
       .def("learn", &Learning::learn, nb::arg("measure"), nb::arg("curves"), nb::arg("values"),
            nb::arg("header"), nb::arg("scale"), nb::arg("rate"), "Learn from rows.")
       .def(

@@ -370,7 +370,8 @@ class Foretelling:
 
     def assume(self, start: Start) -> None:
         """Begin as if some had been seen."""
-        self.seen, self.caution = 50.0, 0.0
+        worth = float(start.observations[0])
+        self.seen, self.caution = worth, 0.0
         for i, channel in enumerate(self.channels):
             products, targets = self.products[i], self.targets[i]
             for k, j in enumerate(self.sources[i]):
@@ -379,7 +380,7 @@ class Foretelling:
                 if one is None:
                     continue
                 ratio, a = source.step / channel.step, 2 * k
-                square, once = 50.0 * (ratio * ratio), 50.0 * ratio
+                square, once = worth * (ratio * ratio), worth * ratio
                 products[a][a] = square * one.moved
                 products[a + 1][a] = square * one.both
                 products[a + 1][a + 1] = square * one.averaged

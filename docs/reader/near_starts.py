@@ -50,6 +50,8 @@ class Start(NamedTuple):
     entries: dict[str, dict[Key, list[int]]]
     weights: dict[str, dict[Key, list[int]]]
     assumed: dict[tuple[int, int], Assumed]
+    observations: list[int]
+    """One: how many what is assumed is worth."""
 
 
 class Figure(NamedTuple):
@@ -88,7 +90,7 @@ class Taking:
         self.stream, self.chances = Coded(packed), chances
         self.known, self.logits, self.counts = [Bit(), Bit()], tree(6), tree(3)
         self.uses, self.weights = tree(4), tree(8)
-        self.start = Start({}, {}, {})
+        self.start = Start({}, {}, {}, [])
 
     def models(self, *, by_column: bool) -> None:
         """Take what was learned in the tables that go by column, or in all else."""
@@ -133,12 +135,13 @@ class Taking:
             return symbol(self.stream, models) - 128
 
         column = source = 0
+        self.start.observations.append(count(trees[0]))
         for _ in range(count(trees[0])):
             further = count(trees[1])
             if further:
                 column, source = column + further, 0
             source += count(trees[2])
-            one, other = (number(models) / 32 for models in shares)
+            one, other = (number(models) / 64 for models in shares)
             moved, averaged = (step_of(16 * number(models)) for models in products)
             like = number(both) / 64 * math.sqrt(moved * averaged)
             self.start.assumed[column, source] = Assumed((one, other), moved, like, averaged)

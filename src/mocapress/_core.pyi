@@ -418,9 +418,10 @@ def near_columns(apart: Sequence[int], joints: Sequence[int], parents: Sequence[
 class NearLearning:
     """Learns what coders of `near` begin with."""
 
-    def __init__(self, assumed: Sequence[tuple[int, int, float, float, float, float, float]]) -> None:
+    def __init__(self, assumed: Sequence[tuple[int, int, float, float, float, float, float]], observations: int) -> None:
         """
-        Of each: channel, source, two shares, and the products of their features.
+        Of each: channel, source, two shares, and the products of their features; and how many
+        observations these are worth.
         """
 
     def learn(self, measure: NearMeasure, curves: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, scale: float, rate: float) -> None:

@@ -21,8 +21,14 @@ _SCALE_OF_MEAN = 2.5
 """Where the search for a mean begins; 5.5 at coarse ones."""
 _TRIES = 7
 _NEAR_ENOUGH = 0.01
-_INNER, _OUTER = 1.05, 1.5
-"""Means of joints may be so many times that of all; of those without further joints, the latter."""
+_INNER, _NEXT, _OUTER = 1.05, 1.15, 1.5
+"""Means of joints may be so many times that of all; of those without further joints the last, of
+those that such a joint follows the one before."""
+_WEIGHTS = {
+    **{"upperneck": 2.0, "lhumerus": 1.6, "rhumerus": 1.6, "lradius": 1.4, "rradius": 1.4},
+    **{"lfoot": 1.7, "rfoot": 1.7, "head": 1.5},
+}
+"""Of joints of the known figure, of which the means would otherwise be above that."""
 _EVEN_ENOUGH = 1.02
 _HASTE = 2.0
 _SAMPLE = 256
@@ -32,8 +38,8 @@ _COARSE = 4e-3
 known figure, of which predictions are known at once, from the second start on."""
 _STARTS = (1.6e-4, 2.2e-3)
 """Of the figure's size: scales from which the next of the learned starts is taken."""
-_RATE = 0.12
-"""What a bit is worth, in squares of the scale."""
+_RATE, _COARSE_RATE = 0.12, 0.2
+"""What a bit is worth, in squares of the scale; the latter from the third start on."""
 
 
 class _Try(NamedTuple):
@@ -81,10 +87,14 @@ class Encoder:
         if figure and figure.markers and goal.in_space:
             self.joints = joints_of(figure.columns, tree_of(figure, self.values))
             self.kept = kept_of(figure.markers, self.values).astype(np.uint8)
-        self.rate, self.starts = _RATE, goal.in_space
+        self.rate: float | None = None
+        self.starts = goal.in_space
         turns = goal.in_space and max_error == inf
         known = turns and self.parts.min(initial=1) >= 1  # its steps are too coarse for closer ones
         self.turn(known=known and is_known(self.measure, stream.columns, self.values), orders=turns)
+        if self.known and skeleton is not None:
+            usual = [_WEIGHTS.get(joint.name, 1.0) for joint in skeleton.joints]
+            self._weigh(self.weights * np.array(usual))
 
     def turn(self, *, known: bool, orders: bool) -> None:
         """Let curves turn as the known figure's do, or, by `orders`, as is best for each joint."""
@@ -148,7 +158,11 @@ class Encoder:
         shares = np.full(self.measure.points, inf)
         if self.goal.in_space and skeleton is not None:
             inner = {joint.parent for joint in skeleton.joints}
-            shares[:] = [_INNER if j in inner else _OUTER for j in range(len(shares))]
+            following = {j.parent for i, j in enumerate(skeleton.joints) if i not in inner}
+            shares[: len(skeleton.joints)] = [
+                _OUTER if j not in inner else _NEXT if j in following else _INNER
+                for j in range(len(skeleton.joints))
+            ]
         return shares
 
     def _parts(self) -> NDArray[np.float64]:
@@ -161,7 +175,7 @@ class Encoder:
         return parts
 
     def _weigh(self, weights: NDArray[np.float64]) -> None:
-        self.weights = weights
+        self.weights = weights * ((self.parts**-2).mean() / weights.mean())
         self.exponents = self._levers()
 
     def _excess(self, errors: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -188,6 +202,10 @@ class Encoder:
         if not self.starts:
             return 0
         return 1 + sum(scale / self.goal.size >= each for each in _STARTS)
+
+    def _rate(self, scale: float) -> float:
+        coarse = self.starts and scale / self.goal.size >= _STARTS[1]
+        return _COARSE_RATE if coarse else _RATE
 
     def _header(self, scale: float, errors: tuple[float, float]) -> bytes:
         knot, one = self._knot(scale)
@@ -216,7 +234,7 @@ class Encoder:
             self.values[first : first + self.chunk],
             self._header(scale, (0.0, 0.0)),
             scale,
-            self.rate,
+            self._rate(scale) if self.rate is None else self.rate,
             self.weights,
             most,
             self.value_most,
