@@ -6,6 +6,7 @@
 
 #include "numbers/arithmetic.hpp"
 #include "numbers/vector_clones.hpp"
+#include "numbers/wide.hpp"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-slp-vectorize")  // see blocks.cpp
@@ -139,17 +140,6 @@ MOCAPRESS_IN_PLACE void average_with(const double* numbers, std::size_t length, 
   }
 }
 
-// Each sum is for registers of two numbers, which all machines have, and, where the compiler can
-// tell when the program runs, of four.
-#if defined(__x86_64__) && defined(__GNUC__) && defined(__linux__) && !defined(__clang__) && \
-    !defined(MOCAPRESS_NO_CLONES)
-const bool kWide = __builtin_cpu_supports("avx2") != 0;
-#define MOCAPRESS_WIDE __attribute__((target("avx2")))
-#else
-constexpr bool kWide = false;
-#define MOCAPRESS_WIDE
-#endif
-
 MOCAPRESS_WIDE void wide_waves(const double* table, const double* numbers, std::size_t count,
                                double* waves) {
   waves_with<Four>(table, numbers, count, waves);
@@ -172,24 +162,24 @@ MOCAPRESS_WIDE void wide_average(const double* numbers, std::size_t length, doub
 }  // namespace
 
 void waves_of(const double* numbers, std::size_t count, double* waves) {
-  if (kWide) return wide_waves(cosines(), numbers, count, waves);
+  if (is_wide()) return wide_waves(cosines(), numbers, count, waves);
   waves_with<Two>(cosines(), numbers, count, waves);
 }
 
 void add_products(const double* features, const double* weighed, const double* aims,
                   std::size_t count, double* matrix, double* sums) {
-  if (kWide) return wide_products(features, weighed, aims, count, matrix, sums);
+  if (is_wide()) return wide_products(features, weighed, aims, count, matrix, sums);
   products_with<Two>(features, weighed, aims, count, matrix, sums);
 }
 
 void weigh(const double* const* features, const double* shares, std::size_t count,
            std::size_t length, double* sums) {
-  if (kWide) return wide_weigh(features, shares, count, length, sums);
+  if (is_wide()) return wide_weigh(features, shares, count, length, sums);
   weigh_with<Two>(features, shares, count, length, sums);
 }
 
 void average(const double* numbers, std::size_t length, double* sums) {
-  if (kWide) return wide_average(numbers, length, sums);
+  if (is_wide()) return wide_average(numbers, length, sums);
   average_with<Two>(numbers, length, sums);
 }
 
