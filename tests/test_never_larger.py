@@ -48,9 +48,8 @@ def takes() -> Iterator[tuple[str, np.ndarray]]:
     yield "noise", random.normal(size=(600, 30))
 
 
-@pytest.mark.parametrize("number", ["{:.6g}", "{!r}", "{:.4f}", "{:.17g}"])
-@pytest.mark.parametrize("rows", [rows for _, rows in takes()], ids=[name for name, _ in takes()])
-def test_rows_that_come_again(rows: np.ndarray, number: str) -> None:
+def amc_of(rows: np.ndarray, number: str) -> bytes:
+    """Print rows as an AMC."""
     body = "".join(
         f"{i + 1}\n"
         + "".join(
@@ -59,7 +58,20 @@ def test_rows_that_come_again(rows: np.ndarray, number: str) -> None:
         )
         for i, row in enumerate(rows)
     )
-    check(f":FULLY-SPECIFIED\n:DEGREES\n{body}".encode(), 6)
+    return f":FULLY-SPECIFIED\n:DEGREES\n{body}".encode()
+
+
+@pytest.mark.parametrize("factor", [2.54, 0.1, 1.0000001])
+def test_decimals_times_a_factor(factor: float) -> None:
+    steps = np.cumsum(np.random.default_rng(6).normal(0, 0.4, (600, 30)), axis=0)
+    decimals = [float(f"{x:.6g}") for x in steps.ravel()]
+    check(amc_of(np.reshape(decimals, steps.shape) * factor, "{!r}"), 6)
+
+
+@pytest.mark.parametrize("number", ["{:.6g}", "{!r}", "{:.4f}", "{:.17g}"])
+@pytest.mark.parametrize("rows", [rows for _, rows in takes()], ids=[name for name, _ in takes()])
+def test_rows_that_come_again(rows: np.ndarray, number: str) -> None:
+    check(amc_of(rows, number), 6)
 
 
 @pytest.mark.corpus

@@ -16,6 +16,7 @@ from mocapress_bench.search_bodies import Bodies, Seen, of_bones, of_joints
 from mocapress_bench.search_data import Take, labels_of
 from mocapress_bench.search_measures import confusion, measures, summary
 from mocapress_bench.search_own import own_search, own_signatures
+from mocapress_bench.search_projection import held_out
 from mocapress_bench.search_rivals import Index
 
 Array = NDArray[np.float64]
@@ -79,9 +80,12 @@ def _seen(
     return rival(seen(takes), seed)
 
 
+HELD_OUT = "mocapress, by projections that have not seen the query's subject"
+"""Only of the clips that the projection which is shipped has learned from."""
 METHODS: dict[str, Method] = {
     "mocapress": own_search,
     "mocapress, signatures alone": own_signatures,
+    HELD_OUT: held_out,
     "QSSD as published": Dictionaries(published=True),
     "QSSD as published, scalar products of quaternions": Dictionaries(published=True, dots=True),
     "K-SVD as published, components": Dictionaries(components=True),

@@ -19,37 +19,32 @@ _BEHIND = 1e6
 
 
 def own_search(takes: Sequence[Take], seed: int) -> Index:  # noqa: ARG001
-    """Index by signatures, of which the nearest are compared again, as in a search for twenty.
-
-    Clips that are not compared again follow by their signatures.
-    """
+    """Index by signatures, of which the nearest are compared again, as in a search for twenty."""
     motions = [standard_motion(take.clip) for take in takes]
     entries = [entry_of(motion) for motion in motions]
-    signatures = [entry.signature for entry in entries]
-    kept = np.array([_numbers(entry) for entry in entries])
-
-    def distances(query: Entry, mirrored: Entry | None = None) -> Array:
-        asked = [_numbers(one) for one in (query, mirrored) if one is not None]
-        found: Array = _BEHIND + np.min(
-            [np.linalg.norm(kept - own, axis=1) for own in asked], axis=0
-        )
-        for hit in rank(
-            query,
-            signatures,
-            lambda i: entries[i].features,
-            len(entries),
-            mirrored=mirrored,
-            closely=CLOSELY,
-        ):
-            found[hit.place] = hit.score
-        return found
-
     return Index(
-        lambda i: distances(entries[i]),
+        lambda i: ranked_by(entries[i], entries),
         float(np.mean([len(entry.signature) + len(entry.features) for entry in entries])),
-        lambda i: distances(entry_of(motions[i].mirrored())),
-        lambda i: distances(entry_of(motions[i].mirrored()), entries[i]),
+        lambda i: ranked_by(entry_of(motions[i].mirrored()), entries),
+        lambda i: ranked_by(entry_of(motions[i].mirrored()), entries, entries[i]),
     )
+
+
+def ranked_by(query: Entry, entries: Sequence[Entry], mirrored: Entry | None = None) -> Array:
+    """Give scores of all clips: behind those that are compared again come others by signatures."""
+    asked = [_numbers(one) for one in (query, mirrored) if one is not None]
+    kept = np.array([_numbers(entry) for entry in entries])
+    found: Array = _BEHIND + np.min([np.linalg.norm(kept - own, axis=1) for own in asked], axis=0)
+    for hit in rank(
+        query,
+        [entry.signature for entry in entries],
+        lambda i: entries[i].features,
+        len(entries),
+        mirrored=mirrored,
+        closely=CLOSELY,
+    ):
+        found[hit.place] = hit.score
+    return found
 
 
 def own_signatures(takes: Sequence[Take], seed: int) -> Index:  # noqa: ARG001

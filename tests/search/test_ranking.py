@@ -48,6 +48,31 @@ def test_as_many_are_found_as_are_wanted_and_there(kept: list[Entry]) -> None:
     assert places(kept[0], kept[:1]) == [0]
 
 
+def test_a_copy_has_score_0_and_nothing_else_has(kept: list[Entry]) -> None:
+    hits = rank(
+        kept[3],
+        [one.signature for one in [*kept, kept[3]]],
+        lambda place: [*kept, kept[3]][place].features,
+    )
+    assert [hit.place for hit in hits if hit.score == 0] == [3, 8]
+
+
+def test_of_equally_near_clips_those_come_first_that_have_few_others_around(
+    kept: list[Entry],
+) -> None:
+    """A clip that is near to everything is near to the query for no good reason."""
+    signatures = np.zeros((26, BYTES), np.int8)
+    signatures[:12, 0] = 100
+    signatures[np.arange(12), 1 + np.arange(12)] = 40
+    signatures[12, 20] = 106
+    for way in (24, 37, 50):
+        signatures[13:, way : way + 13] = 120 * np.eye(13)
+    query = Entry(bytes(BYTES), kept[0].features)
+    hits = rank(query, [*map(bytes, signatures)], lambda _: kept[0].features)
+    assert hits[0].place == 12
+    assert {hit.place for hit in hits[1:13]} == {*range(12)}
+
+
 @pytest.mark.parametrize(
     "clip", [person(0, frames=1), person(0, frames=2), person(0, frames=40, still=True)]
 )

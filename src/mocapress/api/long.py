@@ -97,7 +97,7 @@ def compress_long(
         made, lambda way: _written(source, parts, digest, way, notes or {})
     )
     if found is not None:
-        if source.size <= _HELD and may_be_smaller(found.repetition, len(found), source.size):
+        if source.size <= _HELD and may_be_smaller(found.repetition, len(found), source):
             plain = compress_plain(source, notes or {})
             if len(plain) < len(found):
                 found = LongFile()

@@ -16,8 +16,14 @@ Array = NDArray[np.float64]
 
 CLOSELY = 100
 """Clips that are compared closely, or five times as many as are wanted."""
-_FIRST = 3
-"""The best clips, whose own neighbours count, too."""
+_FIRST, _THEIRS = 3, 1.5
+"""The best clips, whose own neighbours count, too, and the weight of these."""
+_MOST_THEIRS = 3.0
+"""How many times a clip's own score they count at most, so that a copy of the query has score 0."""
+_AROUND = 30
+"""The nearest other candidates, whose mean distance says how crowded it is around a clip."""
+_CROWDED = 0.35
+"""Power of that distance by which scores are divided."""
 _SIGNED, _ALIGNED = 55.0, 1.9
 """Distances of signatures and of alignments that count 1: the former is how they spread over the
 candidates for a query, the latter ten times that. So scores of different queries can be compared.
@@ -65,6 +71,7 @@ def rank(
 
     The nearest by signature are compared again: each is scored by its signature's distance from the
     query and, on the average, from the three best clips, and by how well it aligns with the query.
+    Distances count less where clips are far from each other. A copy of the query has score 0.
 
     Parameters
     ----------
@@ -99,11 +106,13 @@ def rank(
     chosen = np.argsort(near, kind="stable")[:most]
     records = [read_record(features(int(place))) for place in chosen]
     aligned = np.min([_alignments(read_record(one.features), records) for one in queries], axis=0)
-    scores = np.sqrt(near[chosen]) / _SIGNED + aligned / _ALIGNED
-    best = np.argsort(scores, kind="stable")[:_FIRST]
     candidates = np.ascontiguousarray(kept[chosen])
-    theirs = [np.sqrt(_core.scan_signatures(candidates[i], candidates)) for i in best]
-    scores = scores + np.mean(theirs, axis=0) / _SIGNED
+    apart = np.sqrt([_core.scan_signatures(one, candidates) for one in candidates]) / _SIGNED
+    crowded = _spread(apart) ** _CROWDED
+    own = (np.sqrt(near[chosen]) / _SIGNED + aligned / _ALIGNED) / crowded
+    best = np.argsort(own, kind="stable")[:_FIRST]
+    theirs = apart[best].mean(axis=0) / crowded
+    scores = own + np.minimum(_THEIRS * theirs, _MOST_THEIRS * own)
     order = np.argsort(scores, kind="stable")[:top]
     return [
         Hit(int(chosen[i]), float(scores[i]), 0.0, len(records[i]) * EVERY / RATE) for i in order
@@ -236,6 +245,15 @@ def _apart(costs: Features, starts: NDArray[np.int32], top: int) -> list[tuple[i
         left[common > _OVERLAP * np.minimum(lengths, end - first + 1)] = np.inf
         left[end] = np.inf
     return found
+
+
+def _spread(apart: Array) -> Array:
+    """Give for each clip how far the nearest others are on average, of distances (N, N)."""
+    most = min(_AROUND, len(apart) // 3)
+    if not most:
+        return np.ones(len(apart))
+    spread: Array = np.sort(apart, axis=1)[:, 1 : most + 1].mean(axis=1)
+    return np.maximum(spread, 1 / _SIGNED)
 
 
 def _alignments(wanted: Features, others: Sequence[Features]) -> Array:
