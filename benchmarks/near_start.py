@@ -154,7 +154,9 @@ def header_of(window: Window, exponents: NDArray[np.int64], scale: float, start:
     )
 
 
-def waves_of(window: Window, exponents: NDArray[np.int64], scale: float, start: int) -> Iterator[Values]:
+def waves_of(
+    window: Window, exponents: NDArray[np.int64], scale: float, start: int
+) -> Iterator[Values]:
     """Give the waves of moves and averages of spans, (G, 63, 2, C), in steps, as decoded."""
     k, t = np.mgrid[0:GROUP, 0:GROUP]
     cosines = np.sqrt(2 / GROUP) * np.cos(np.pi * k * (2 * t + 1) / (2 * GROUP))

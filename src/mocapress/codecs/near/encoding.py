@@ -24,9 +24,10 @@ _NEAR_ENOUGH = 0.01
 _INNER, _NEXT, _OUTER = 1.05, 1.15, 1.5
 """Means of joints may be so many times that of all; of those without further joints the last, of
 those that such a joint follows the one before."""
-_WEIGHTS = {
-    **{"upperneck": 2.0, "lhumerus": 1.6, "rhumerus": 1.6, "lradius": 1.4, "rradius": 1.4},
-    **{"lfoot": 1.7, "rfoot": 1.7, "head": 1.5},
+_WEIGHTS = {"upperneck": 2.0, "head": 1.5} | {
+    side + joint: weight
+    for side in "lr"
+    for joint, weight in (("humerus", 1.6), ("radius", 1.4), ("foot", 1.7))
 }
 """Of joints of the known figure, of which the means would otherwise be above that."""
 _EVEN_ENOUGH = 1.02
