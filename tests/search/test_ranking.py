@@ -61,16 +61,26 @@ def test_of_equally_near_clips_those_come_first_that_have_few_others_around(
     kept: list[Entry],
 ) -> None:
     """A clip that is near to everything is near to the query for no good reason."""
-    signatures = np.zeros((26, BYTES), np.int8)
+    signatures = np.zeros((18, BYTES), np.int8)
     signatures[:12, 0] = 100
     signatures[np.arange(12), 1 + np.arange(12)] = 40
     signatures[12, 20] = 106
-    for way in (24, 37, 50):
-        signatures[13:, way : way + 13] = 120 * np.eye(13)
+    for way in (24, 34, 44):
+        signatures[13:, way : way + 5] = 120 * np.eye(5)
     query = Entry(bytes(BYTES), kept[0].features)
     hits = rank(query, [*map(bytes, signatures)], lambda _: kept[0].features)
     assert hits[0].place == 12
     assert {hit.place for hit in hits[1:13]} == {*range(12)}
+
+
+def test_copies_in_a_library_do_not_harm_each_other(kept: list[Entry]) -> None:
+    query = entry(person(5, frames=240, fps=120, style="Kinect"))
+    for copies in (2, 6):
+        assert {*places(query, [*kept, *[kept[5]] * copies, *kept])[: copies + 2]} == {
+            5,
+            13 + copies,
+            *range(8, 8 + copies),
+        }
 
 
 @pytest.mark.parametrize(

@@ -24,6 +24,8 @@ _AROUND = 30
 """The nearest other candidates, whose mean distance says how crowded it is around a clip."""
 _CROWDED = 0.35
 """Power of that distance by which scores are divided."""
+_FEW, _LEAST_SPREAD = 5, 0.7
+"""Fewer do not say it; and the least part of the median of these distances that counts."""
 _SIGNED, _ALIGNED = 55.0, 1.9
 """Distances of signatures and of alignments that count 1: the former is how they spread over the
 candidates for a query, the latter ten times that. So scores of different queries can be compared.
@@ -248,12 +250,15 @@ def _apart(costs: Features, starts: NDArray[np.int32], top: int) -> list[tuple[i
 
 
 def _spread(apart: Array) -> Array:
-    """Give for each clip how far the nearest others are on average, of distances (N, N)."""
+    """Give for each clip how far the nearest others are on average, of distances (N, N).
+
+    No less than a part of the median, so that copies of a clip hardly harm each other.
+    """
     most = min(_AROUND, len(apart) // 3)
-    if not most:
+    if most < _FEW:
         return np.ones(len(apart))
     spread: Array = np.sort(apart, axis=1)[:, 1 : most + 1].mean(axis=1)
-    return np.maximum(spread, 1 / _SIGNED)
+    return np.maximum(spread, max(_LEAST_SPREAD * float(np.median(spread)), 1 / _SIGNED))
 
 
 def _alignments(wanted: Features, others: Sequence[Features]) -> Array:
