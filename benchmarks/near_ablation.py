@@ -14,7 +14,8 @@ from pathlib import Path
 import mocapress as mp
 from mocapress.codecs.near import Near
 from mocapress.codecs.near.encoding import Encoder
-from mocapress.codecs.near.goal import RADIUS, Goal
+from mocapress.codecs.near.figure import RADIUS
+from mocapress.codecs.near.goal import Goal
 from mocapress.motion.units import centimetres_per_unit, figure_size
 from mocapress_bench.tables import markdown
 from near_rates import Rival, rivals

@@ -21,7 +21,8 @@ import mocapress as mp
 from mocapress import _core
 from mocapress.codecs.near import Near
 from mocapress.codecs.near.encoding import Encoder
-from mocapress.codecs.near.goal import RADIUS, Goal
+from mocapress.codecs.near.figure import RADIUS
+from mocapress.codecs.near.goal import Goal
 from mocapress.motion.units import centimetres_per_unit, figure_size
 from mocapress_bench.tables import markdown
 

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 import mocapress as mp
 from mocapress import _core
-from mocapress.codecs.near.goal import RADIUS, Goal, Measure
+from mocapress.codecs.near.figure import RADIUS, figure_of
+from mocapress.codecs.near.goal import Goal, Measure
 from mocapress.codecs.near.header import COARSE, STEPS_PER_OCTAVE, joints_of, pack_header
 from mocapress.codecs.near.turning import KNOWN, Turning
 from mocapress.motion import Clip
@@ -46,7 +47,9 @@ class Window:
         assert unit is not None
         self.unit, self.size = unit, figure_size(clip.skeleton)
         self.measure = Measure(
-            Goal(True, 1.0, inf, RADIUS / unit, self.size), clip.skeleton, clip.columns
+            Goal(True, 1.0, inf, RADIUS / unit, self.size),
+            figure_of(clip.skeleton, clip.columns, clip.values),
+            clip.columns,
         )
         self.turnings: list[Turning] = []
         named = [(column.joint, column.kind) for column in clip.columns]

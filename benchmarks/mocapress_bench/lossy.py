@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 import mocapress as mp
 from mocapress import _core, codecs
-from mocapress.codecs.near.goal import RADIUS, Goal, Measure
+from mocapress.codecs.near.figure import RADIUS, figure_of
+from mocapress.codecs.near.goal import Goal, Measure
 from mocapress.motion import Clip
 from mocapress.motion.figure import centimetres
 from mocapress.motion.kinematics import positions, rotations
@@ -76,7 +77,8 @@ def task_of(clip: Clip) -> Task:
     if unit is None or clip.skeleton is None:
         raise mp.UnsupportedError("a clip whose units of length are not known")
     goal = Goal(True, inf, inf, RADIUS / unit, figure_size(clip.skeleton))
-    return Task(clip, unit, Measure(goal, clip.skeleton, clip.columns))
+    figure = figure_of(clip.skeleton, clip.columns, clip.values)
+    return Task(clip, unit, Measure(goal, figure, clip.columns))
 
 
 def of_codec(*specs: str) -> Callable[[Task], Coded]:

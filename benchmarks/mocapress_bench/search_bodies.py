@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.codecs.qssd.quaternions import logarithm
-from mocapress.search.joint_names import JOINTS
+from mocapress.motion.standard_joints import JOINTS
 from mocapress.search.qssd import ABOVE, displacements
 from mocapress_bench.search_data import Take
 

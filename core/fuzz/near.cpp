@@ -46,6 +46,7 @@ void round_trip(Input input, std::size_t channels) {
   task.plan = plan_of(input, channels, false);
   task.scale = 0.01;
   task.weights.assign(channels, 1.0);
+  task.most.assign(channels, std::numeric_limits<double>::infinity());
   task.value_most.assign(channels, kMost);
   task.rounds = 1;
   near::Measure measure;

@@ -89,18 +89,27 @@ class Encoding {
   }
 
  private:
-  // Puts a number for the curves wherever there is none, or none that they could reach.
+  // Whether the curves follow a number; otherwise it comes back as it is.
+  bool is_usable(std::size_t i) const {
+    if (!task_.kept.empty() && task_.kept[i]) return false;
+    return std::fabs(given_[i]) <= kMostSteps * steps_[i % channels_];
+  }
+
+  // Puts a number for the curves wherever they follow none: on a line between those around.
   void fill_gaps() {
     for (std::size_t c = 0; c < channels_; ++c) {
-      const auto usable = [&](double value) { return std::fabs(value) <= kMostSteps * steps_[c]; };
+      std::size_t next = 0;  // frame behind those that are filled
       double last = 0;
-      for (std::size_t f = frames_; f-- > 0;) {
-        if (usable(whole_[f * channels_ + c])) last = whole_[f * channels_ + c];
-      }
-      for (std::size_t f = 0; f < frames_; ++f) {
-        double& value = whole_[f * channels_ + c];
-        if (!usable(value)) value = last;
-        last = value;
+      for (std::size_t f = 0; f <= frames_; ++f) {
+        if (f < frames_ && !is_usable(f * channels_ + c)) continue;
+        const double own = f < frames_ ? whole_[f * channels_ + c] : last;
+        const double from = next > 0 ? last : own;
+        for (std::size_t k = next; k < f; ++k) {
+          const auto part = static_cast<double>(k + 1 - next) / static_cast<double>(f + 1 - next);
+          whole_[k * channels_ + c] = from + (own - from) * part;
+        }
+        next = f + 1;
+        last = own;
       }
     }
   }
@@ -143,9 +152,7 @@ class Encoding {
   }
 
   // Whether the curves have another number in place of what was given.
-  bool is_replaced(std::size_t i) const {
-    return std::bit_cast<std::uint64_t>(given_[i]) != std::bit_cast<std::uint64_t>(whole_[i]);
-  }
+  bool is_replaced(std::size_t i) const { return !is_usable(i); }
 
   void begin() {
     Bit moves[2];
@@ -225,8 +232,8 @@ class Encoding {
 
   // The largest error of a point, without a rig of a value.
   double bound_of(std::size_t point) const {
-    if (measure_.rig) return task_.most;
-    return std::min(task_.most, task_.value_most[point] * measure_.others[point]);
+    if (measure_.rig) return task_.most[point];
+    return std::min(task_.most[point], task_.value_most[point] * measure_.others[point]);
   }
 
   bool within(const double* errors) const {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "coding/bit.hpp"
@@ -14,11 +13,12 @@ namespace mocapress::near {
 // How a clip is coded.
 struct Task {
   Plan plan;
-  double scale = 1;             // the step of a channel that moves a point by 1
-  double rate = 0.12;           // what a bit is worth, in squares of the scale
-  std::vector<double> weights;  // of the points that errors are measured at
-  double most = std::numeric_limits<double>::infinity();  // error of any point
+  double scale = 1;                // the step of a channel that moves a point by 1
+  double rate = 0.12;              // what a bit is worth, in squares of the scale
+  std::vector<double> weights;     // of the points that errors are measured at
+  std::vector<double> most;        // error of each point; infinite for no bound
   std::vector<double> value_most;  // error of any value, by channel; infinite for no bound
+  std::vector<bool> kept;          // of values that must come back as they are; none: all may move
   int rounds = 3;                  // of coding again what is above a bound, before it is corrected
 };
 

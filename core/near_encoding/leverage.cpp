@@ -43,7 +43,7 @@ void Measure::errors(const double* row, const double* other, std::size_t channel
   for (std::size_t j = 0; j < rig->joints(); ++j) {
     const Matrix one = axes_of(&turns[0][4 * j]), two = axes_of(&turns[1][4 * j]);
     const Vector away = sum(at(&places[0][3 * j]), scaled(at(&places[1][3 * j]), -1));
-    double most = 0;
+    double most = dot(away, away);
     for (std::size_t k = 0; k < 3; ++k) {
       const Vector apart = sum(away, scaled(sum(one[k], scaled(two[k], -1)), radius));
       most = std::max(most, dot(apart, apart));

@@ -90,21 +90,26 @@ Given<double, 2> errors(const near::Measure& measure, const Input<double, 2>& va
 std::tuple<nb::bytes, Given<double, 2>, Given<double, 2>> encode(
     const near::Measure& measure, const near::Measure& curves, const Input<double, 2>& values,
     const nb::bytes& header, double scale, double rate, const Input<double, 1>& weights,
-    double most, const Input<double, 1>& value_most, int rounds) {
+    const Input<double, 1>& most, const Input<double, 1>& value_most,
+    const Input<std::uint8_t, 2>& kept, int rounds) {
   const std::size_t frames = values.shape(0), channels = values.shape(1);
+  const std::size_t points = measure.points(channels);
+  if (kept.shape(0) != frames || kept.shape(1) != channels) {
+    throw std::invalid_argument("what is kept of other values");
+  }
   const near::Task task{near::read_header(view(header), channels),
                         scale,
                         rate,
-                        vector_of(weights, measure.points(channels)),
-                        most,
+                        vector_of(weights, points),
+                        vector_of(most, points),
                         vector_of(value_most, channels),
+                        std::vector<bool>(kept.data(), kept.data() + frames * channels),
                         rounds};
   near::Coded coded;
   {
     const nb::gil_scoped_release unlocked;
     coded = near::encode(values.data(), frames, task, measure, curves);
   }
-  const std::size_t points = measure.points(channels);
   return {to_python(coded.payload), give(std::move(coded.values), std::array{frames, channels}),
           give(std::move(coded.errors), std::array{frames, points})};
 }
@@ -327,7 +332,7 @@ void bind_near(nb::module_& module) {
              "Count for each turning the values that come back as other angles of the same turn.");
   module.def("near_encode", &encode, nb::arg("measure"), nb::arg("curves"), nb::arg("values"),
              nb::arg("header"), nb::arg("scale"), nb::arg("rate"), nb::arg("weights"),
-             nb::arg("most"), nb::arg("value_most"), nb::arg("rounds"),
+             nb::arg("most"), nb::arg("value_most"), nb::arg("kept"), nb::arg("rounds"),
              "Code rows as a chunk: its payload, the values that it decodes to, and the errors of\n"
              "joints, (F, J), or without a skeleton of values, (F, C).");
   module.def("near_decode", &decode, nb::arg("header"), nb::arg("payload"),

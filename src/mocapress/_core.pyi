@@ -449,7 +449,7 @@ def near_unlike(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], 
     Count for each turning the values that come back as other angles of the same turn.
     """
 
-def near_encode(measure: NearMeasure, curves: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, scale: float, rate: float, weights: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], most: float, value_most: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], rounds: int) -> tuple[bytes, Annotated[NDArray[numpy.float64], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
+def near_encode(measure: NearMeasure, curves: NearMeasure, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], header: bytes, scale: float, rate: float, weights: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], most: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], value_most: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], kept: Annotated[NDArray[numpy.uint8], dict(shape=(None, None), order='C', device='cpu', writable=False)], rounds: int) -> tuple[bytes, Annotated[NDArray[numpy.float64], dict(shape=(None, None))], Annotated[NDArray[numpy.float64], dict(shape=(None, None))]]:
     """
     Code rows as a chunk: its payload, the values that it decodes to, and the errors of
     joints, (F, J), or without a skeleton of values, (F, C).

@@ -10,11 +10,14 @@ from numpy.typing import NDArray
 
 import mocapress as mp
 from mocapress.codecs import Codec
+from mocapress.codecs.near.figure import figure_of
 from mocapress.codecs.near.goal import goal_of
+from mocapress.describe import describe_mcz
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Joint, Skeleton
 from mocapress.motion.kinematics import positions, rotations
-from mocapress.motion.units import amount
+from mocapress.motion.units import Amount, amount
+from mocapress.source import Source
 
 Values = NDArray[np.float64]
 CMU = 2.54 / 0.45
@@ -26,7 +29,7 @@ def decoded_by(codec: Codec, clip: Clip) -> Clip:
 
 
 def joint_errors(clip: Clip, other: Clip, radius: float) -> Values:
-    """Give the largest error of three points along the joints' axes, (F, J), computed anew."""
+    """Give how far joints, or any of three points along their axes, are off, (F, J), anew."""
     points = []
     for one in (clip, other):
         w, x, y, z = np.moveaxis(rotations(one), -1, 0)
@@ -36,7 +39,8 @@ def joint_errors(clip: Clip, other: Clip, radius: float) -> Values:
             [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)],
         ]
         ends = np.moveaxis(np.array(axes), (0, 1), (-2, -1)) * radius
-        points.append(positions(one)[..., None, :] + ends)
+        places = positions(one)[..., None, :]
+        points.append(np.concatenate([places, places + ends], axis=-2))
     errors: Values = np.linalg.norm(points[0] - points[1], axis=-1).max(axis=-1)
     return errors
 
@@ -75,6 +79,96 @@ def test_no_joint_is_off_by_more_than_asked(samples: Path, name: str, asked: str
     decoded = decoded_by(mp.codec(f"near:max={asked}"), clip)
     errors = joint_errors(clip, decoded, 3 / unit)
     assert 0.2 * most < errors.max() <= most
+
+
+@pytest.mark.parametrize(
+    ("name", "feet"),
+    [
+        ("cmu_01_01.amc", {"lfoot", "ltoes", "rfoot", "rtoes"}),
+        ("mocapbank.bvh", {"LeftAnkle", "RightAnkle"}),
+    ],
+)
+def test_parts_of_the_body_keep_bounds_of_their_own(
+    samples: Path, name: str, feet: set[str]
+) -> None:
+    clip = mp.read(samples / name)[:200]
+    assert clip.skeleton is not None
+    unit = CMU if name.endswith("amc") else 1.0
+    head = "head" if name.endswith("amc") else "Head"
+    decoded = decoded_by(mp.codec(f"near:max=0.1cm,feet=0.02cm,{head}=5mm"), clip)
+    largest = joint_errors(clip, decoded, 3 / unit).max(axis=0) * unit
+    bounds = dict.fromkeys(feet, 0.02) | {head: 0.5}
+    for joint, found in zip(clip.skeleton.names, largest, strict=True):
+        assert found <= bounds.get(joint, 0.1), joint
+    assert largest[clip.skeleton.index(head)] > 0.1
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_any_joints_of_any_skeleton_keep_their_bounds(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    clip = arm(int(random.integers(1, 90)), joints=int(random.integers(1, 12)), seed=seed)
+    assert clip.skeleton is not None
+    joints = tuple(
+        replace(joint, parent=int(random.integers(0, j)) if j else -1)
+        for j, joint in enumerate(clip.skeleton.joints)
+    )
+    clip = Clip.of(clip.values.copy(), clip.columns, None, Skeleton(joints))
+    parts = {
+        f"j{j}": float(0.1 * 2 ** random.uniform(-5, 3))
+        for j in range(len(joints))
+        if random.random() < 0.5
+    }
+    told = ",".join(f"{name}={most!r}" for name, most in parts.items())
+    codec = mp.codec(f"near:max=0.1,{told}")
+    radius = codec.goal(clip.skeleton, clip.columns).radius  # type: ignore[attr-defined]
+    largest = joint_errors(clip, decoded_by(codec, clip), radius).max(axis=0)
+    for j, found in enumerate(largest):
+        assert found <= parts.get(f"j{j}", 0.1)
+
+
+def test_a_mean_beside_bounds_of_parts_is_that_of_all_errors(samples: Path) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")[:300]
+    decoded = decoded_by(mp.codec("near:mean=0.05cm,hands=0.15cm"), clip)
+    errors = joint_errors(clip, decoded, 3 / CMU) * CMU
+    assert errors.mean() == pytest.approx(0.05, rel=0.03)
+    assert clip.skeleton is not None
+    assert errors[:, clip.skeleton.index("rfingers")].max() <= 0.15
+
+
+def test_files_say_the_bounds_of_parts_and_what_came_of_them(samples: Path) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")[:100]
+    blob = mp.compress(clip, "near:max=0.1cm,righthand=0.01cm,root=0.02cm")
+    found = describe_mcz(Source(blob))
+    assert found["codec"] == "near:max=0.1cm,righthand=0.01cm,root=0.02cm"
+    assert mp.load(blob).frames == 100
+    largest = float(found["notes"]["largest_joint_error_of_righthand"])
+    assert 0 < largest <= 0.01 / CMU
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ("max=0.1cm,tail=0.1cm", "no joint, and no such part; expected one of head, lefthand"),
+        ("max=0.1cm,feet=thin", "no bound of a part of the body: feet; expected an amount above 0"),
+        ("max=0.1cm,feet=0.1deg", "in space only"),
+        ("max=0.1deg,feet=0.1cm", "in space only"),
+        ("max=0.1cm,feet=1cm,feet=2cm", "each once"),
+        ("max_error=1,feet=1cm", "no bounds of parts beside it"),
+        ("feet", "no such parameter"),
+    ],
+)
+def test_bounds_of_parts_that_cannot_be_kept_are_refused(
+    samples: Path, asked: str, said: str
+) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")[:9]
+    with pytest.raises(ParameterError, match=said):
+        mp.codec(f"near:{asked}").encode(clip.main, skeleton=clip.skeleton)
+
+
+def test_parts_that_names_do_not_say_are_refused() -> None:
+    clip = arm(9)
+    with pytest.raises(ParameterError, match="names of joints do not say where it is"):
+        mp.codec("near:max=0.1cm,feet=0.1cm").encode(clip.main, skeleton=clip.skeleton)
 
 
 def test_the_mean_is_what_was_asked(samples: Path) -> None:
@@ -263,11 +357,12 @@ def test_bounds_that_are_no_amounts_are_refused() -> None:
 
 def test_amounts_become_units_of_the_file(samples: Path) -> None:
     clip = mp.read(samples / "cmu_01_01.amc")
-    asked = {"most": amount("1cm", ""), "mean": None, "precision": None}
-    goal = goal_of(clip.skeleton, clip.columns, **asked, quality=5)
+    figure = figure_of(clip.skeleton, clip.columns, clip.values)
+    asked: dict[str, Amount | None] = {"most": amount("1cm", ""), "mean": None, "precision": None}
+    goal = goal_of(figure, **asked, quality=5, parts={})
     assert goal.most == pytest.approx(1 / CMU)
     assert goal.radius == pytest.approx(3 / CMU)
-    mean = {"most": None, "mean": amount("0.5mm", ""), "precision": None}
-    goal = goal_of(clip.skeleton, clip.columns, **mean, quality=5)
+    mean: dict[str, Amount | None] = {"most": None, "mean": amount("0.5mm", ""), "precision": None}
+    goal = goal_of(figure, **mean, quality=5, parts={})
     assert goal.mean == pytest.approx(0.05 / CMU)
     assert goal.most == inf

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 import mocapress as mp
 from mocapress import codecs
+from mocapress.codecs.markers import markers_of
 from mocapress.codecs.patterns import Patterns
 from mocapress.codecs.patterns.clustering import nearest, patterns_in_steps, patterns_of
 from mocapress.codecs.patterns.encoding import Job
-from mocapress.codecs.patterns.hierarchy import Hierarchy, head_diagonal, hierarchy_of, markers_of
+from mocapress.codecs.patterns.hierarchy import Hierarchy, head_diagonal, hierarchy_of
 from mocapress.codecs.patterns.segmentation import lengths_of, normalised
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Stream

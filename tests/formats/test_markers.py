@@ -162,3 +162,13 @@ def test_what_lies_beside_a_table_and_does_not_fit_is_left_away(
         clip = mp.read(path)
     assert clip.values.shape == (90, 4)
     assert clip.columns[0].name == "column 1"
+
+
+def test_near_counts_whole_numbers_in_the_unit_that_the_file_states() -> None:
+    points, words, analog = walk(floats=False)
+    made = c3d(points, words, analog, processor=INTEL, floats=False, samples=4)  # tenths
+    original = mp.markers(mp.read(made))
+    found = mp.markers(mp.read(mp.decompress(mp.compress(made, "near:max=4mm"))))
+    assert (found.valid == original.valid).all()
+    away = np.linalg.norm(found.positions - original.positions, axis=2)
+    assert 1 < away[original.valid].max() <= 4.1

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from mocapress.codecs.qssd.quaternions import conjugate, exponential, product, turned_degrees
-from mocapress.search.joint_names import JOINTS
+from mocapress.motion.standard_joints import JOINTS
 from mocapress.search.qssd import bone_turns, dictionary_of, distances, mirrored
 
 Array = NDArray[np.float64]

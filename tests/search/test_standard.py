@@ -9,8 +9,8 @@ from people import STYLES, named, person
 
 from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.motion import Skeleton
+from mocapress.motion.standard_joints import read_mapping
 from mocapress.search.features import features, read_record, record
-from mocapress.search.joint_names import read_mapping
 from mocapress.search.standard import standard_motion
 
 

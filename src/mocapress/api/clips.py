@@ -81,7 +81,8 @@ def _checked(clip: Clip, codec: Codec, model: Model | None, blob: bytes) -> Comp
     for index, (name, stream) in enumerate(clip.streams.items()):
         rows = opened.rows(index).values
         if not codec.lossless:
-            found = checked_loss(codec, Clip({name: stream}), rows)
+            alone = Clip({name: stream}, clip.skeleton if index == 0 else None)
+            found = checked_loss(codec, alone, rows)
             loss = loss or found
         elif rows.tobytes() != stream.values.tobytes():
             raise VerificationError(f"codec {codec.id} does not give back stream {name!r}")

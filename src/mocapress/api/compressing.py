@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from mocapress.api.clips import (
     Compressed,
     checked_codec,
@@ -34,6 +36,8 @@ from mocapress.source import Named, Source
 _SMALL = 2**15
 # Files of stored numbers, unlike text, may repeat themselves.
 _SMALL_OF_NUMBERS = 2**23
+_ROUNDED = 1e-4
+"""How far stored numbers are from those that they stand for, where these are the same."""
 
 
 def compress(
@@ -206,7 +210,8 @@ def compress_parts(
 def with_names(source: Source, parts: Split) -> Clip:
     """Give a file's clip with the names of its markers, where its layout knows them.
 
-    The numbers are those that the file stores. Columns before those of markers keep their names.
+    The numbers are those that the file stores, and units are theirs: ``0.1 mm`` where it stores
+    whole numbers of tenths. Columns before those of markers keep their names.
     """
     clip = parts.clip
     if source.format is None:
@@ -218,7 +223,16 @@ def with_names(source: Source, parts: Split) -> Clip:
     more = clip.channels - told.channels
     if more < 0 or told.frames != clip.frames:
         return clip
-    return clip.with_columns((*clip.columns[:more], *told.columns))
+    columns = told.columns
+    raw = clip.values[:, more:]
+    known = np.isfinite(raw) & np.isfinite(told.values) & (raw != 0) & (told.values != 0)
+    times = float(np.median(told.values[known] / raw[known])) if known.any() else 1.0
+    if abs(times - 1) > _ROUNDED:
+        scaled = (f"{times!r} {column.unit}" if column.unit else "" for column in columns)
+        columns = tuple(
+            replace(column, unit=unit) for column, unit in zip(columns, scaled, strict=True)
+        )
+    return clip.with_columns((*clip.columns[:more], *columns))
 
 
 def smallest(

@@ -181,6 +181,8 @@ def compress(
         facts["largest_error"] = loss.most if loss else None
         facts["mean_error"] = loss.mean if loss else None
         facts["largest_joint_error"] = loss.joints if loss else None
+        facts["largest_marker_error"] = loss.markers if loss else None
+        facts["largest_joint_error_of"] = dict(loss.parts) if loss else {}
         facts["psnr"] = loss.psnr if loss and isfinite(loss.psnr) else None
         job.outputs[job.target] = blob
         job.remove = remove

@@ -79,7 +79,7 @@ def search(
     from mocapress.cli.batch import usage
     from mocapress.cli.models import open_models
     from mocapress.cli.pictures import check_kind
-    from mocapress.search.joint_names import read_mapping
+    from mocapress.motion.standard_joints import read_mapping
     from mocapress.storage import check_targets
 
     if frames is not None and time is not None:

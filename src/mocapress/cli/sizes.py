@@ -12,8 +12,11 @@ def show_sizes(job: Job) -> None:
         errors = f"; lossy: largest error {lost:.3g}, mean {job.result['mean_error']:.3g}"
         if job.result["psnr"] is not None:
             errors += f", PSNR {job.result['psnr']:.1f} dB"
-        if (joints := job.result["largest_joint_error"]) is not None:
-            errors += f"; joints off by up to {joints:.3g} units of length"
+        for point in ("joint", "marker"):
+            if (most := job.result[f"largest_{point}_error"]) is not None:
+                errors += f"; {point}s off by up to {most:.3g} units of length"
+        parts = job.result["largest_joint_error_of"]
+        errors += "".join(f", {part} by {most:.3g}" for part, most in parts.items())
     print(f"{job.target}: {_sizes([job])}{errors}")
 
 

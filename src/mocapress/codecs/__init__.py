@@ -127,6 +127,9 @@ def codec(text: str) -> Codec:
     values: dict[str, Any] = {}
     for item in filter(None, rest.split(",")):
         key, equals, value = item.partition("=")
+        if equals and key and key not in known and cls.rest:
+            values[cls.rest] = ",".join(filter(None, (values.get(cls.rest), item)))
+            continue
         if key not in known or not equals:
             raise ParameterError(
                 f"codec {name} has no such parameter",
@@ -143,7 +146,7 @@ def spec(made: Codec) -> str:
     fields: Any = dataclasses.fields(made)  # type: ignore[arg-type]
     given = {field.name: getattr(made, field.name) for field in fields}
     changed = [
-        f"{field.name}={given[field.name]}"
+        given[field.name] if field.name == made.rest else f"{field.name}={given[field.name]}"
         for field in fields
         if given[field.name] != field.default
     ]

@@ -155,6 +155,9 @@ class Codec(ABC):
 
     id: ClassVar[str]
     can: ClassVar[Capabilities]
+    rest: ClassVar[str] = ""
+    """The parameter, a text, that takes what is given as ``name=value`` with names that no other
+    parameter has; none for a codec that refuses them."""
 
     @property
     def lossless(self) -> bool:
@@ -254,6 +257,10 @@ class Codec(ABC):
     def largest_errors(self, columns: Sequence[Column]) -> list[float]:
         """Give the error up to which each column may come back; infinite where none was asked."""
         return [0.0 if self.lossless else inf] * len(columns)
+
+    def parts_of(self, clip: Clip) -> dict[str, list[int]]:
+        """Give the parts of the body that have bounds of their own: name -> joints, or markers."""
+        return {}
 
     def measure(self, clip: Clip, encoded: Encoded, raw_bytes: int) -> dict[str, float]:
         """Give what is measured of this codec alone (capability ``measured``): name -> value."""

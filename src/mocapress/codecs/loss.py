@@ -1,13 +1,14 @@
 """What a lossy codec lost, measured on its decoder's output."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.codecs.contract import Codec
+from mocapress.codecs.markers import markers_of
 from mocapress.errors import UnsupportedError, VerificationError
 from mocapress.motion import Clip, Column
 from mocapress.motion.comparing import distances_of, errors_of
@@ -26,6 +27,10 @@ class Loss:
     joints: float | None = None
     """Largest distance of a joint from its place, in the clip's units of length; None where it is
     not known. Angles may be far off that together turn a joint as before."""
+    markers: float | None = None
+    """Largest distance of a marker from its place."""
+    parts: Mapping[str, float] = field(default_factory=dict)
+    """The same of parts of the body that have bounds of their own."""
 
     @classmethod
     def of(
@@ -56,11 +61,14 @@ class Loss:
     def notes(self) -> dict[str, str]:
         """Give what a file says of what it lost, as its notes."""
         facts = zip(LOSS_NOTES, (self.most, self.mean, self.psnr), strict=True)
-        return {key: f"{value:.6g}" for key, value in facts}
+        notes = {key: f"{value:.6g}" for key, value in facts}
+        return notes | {f"{LARGEST_OF}{part}": f"{most:.6g}" for part, most in self.parts.items()}
 
 
 LOSS_NOTES = ("largest_error", "mean_error", "psnr")
 """Keys of the notes in which a lossy file says what it lost."""
+LARGEST_OF = "largest_joint_error_of_"
+"""Before the name of a part of the body, the key of a note that says how far its joints are off."""
 
 
 def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss:
@@ -83,21 +91,46 @@ def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss
                 expected=f"errors up to {bound:g}",
                 found=f"{error:g}",
             )
-    return replace(
-        Loss.of(clip.values, decoded, clip.columns), joints=_largest_distance(clip, decoded)
-    )
+    loss = Loss.of(clip.values, decoded, clip.columns)
+    largest = _largest_distances(clip, decoded)
+    if largest is None:
+        return loss
+    most = float(largest.max(initial=0))
+    parts = {part: float(largest[joints].max()) for part, joints in codec.parts_of(clip).items()}
+    if clip.skeleton is None:
+        return replace(loss, markers=most, parts=parts)
+    return replace(loss, joints=most, parts=parts)
 
 
-def _largest_distance(clip: Clip, decoded: NDArray[np.float64]) -> float | None:
-    """Give how far a joint is from its place at most; None where joints cannot be placed."""
-    if clip.skeleton is None or not clip.frames:
+def _largest_distances(clip: Clip, decoded: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """Give how far each joint, or each marker, is from its place at most, (J,).
+
+    None where they have no places; a marker that is missing is nowhere.
+    """
+    if clip.skeleton is None:
+        return _distances_of_markers(clip, decoded)
+    if not clip.frames:
         return None
     try:
         with np.errstate(all="ignore"):
             distances = distances_of(clip, clip.with_values(decoded))
     except UnsupportedError:
         return None
-    return float(distances.max()) if np.isfinite(distances).all() else None
+    largest: NDArray[np.float64] = distances.max(axis=0)
+    return largest if np.isfinite(largest).all() else None
+
+
+def _distances_of_markers(clip: Clip, decoded: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    markers = markers_of(clip.columns)
+    if not markers.first:
+        return None
+    with np.errstate(all="ignore"):
+        moved = markers.places(decoded) - markers.places(clip.values)
+        distances = np.sqrt((moved * moved).sum(axis=2))
+    largest: NDArray[np.float64] = np.where(np.isfinite(distances), distances, 0).max(
+        axis=0, initial=0
+    )
+    return largest
 
 
 def missed_target(codec: Codec, loss: Loss) -> str | None:

@@ -67,6 +67,12 @@ def _is_figure(centimetres: float) -> bool:
     return 130 <= centimetres <= 230
 
 
+def centimetres_in(unit: str) -> float | None:
+    """Give the length of a column's unit, such as ``mm`` or ``0.1 mm``; None where it is none."""
+    times, _, name = unit.rpartition(" ")
+    return LENGTHS[name] * float(times or 1) if name in LENGTHS else None
+
+
 @dataclass(frozen=True, slots=True)
 class Amount:
     """A number with its unit, as it was written; ``unit`` may be empty."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.errors import CorruptError
-from mocapress.search.joint_names import JOINTS
+from mocapress.motion.standard_joints import JOINTS
 from mocapress.search.standard import RATE, StandardMotion
 
 Array = NDArray[np.float64]

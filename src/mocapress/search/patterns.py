@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from mocapress.codecs.patterns.clustering import nearest, patterns_of
 from mocapress.codecs.patterns.segmentation import lengths_of, normalised
-from mocapress.search.joint_names import JOINTS
+from mocapress.motion.standard_joints import JOINTS
 from mocapress.search.standard import StandardMotion
 
 Array = NDArray[np.float64]

@@ -10,7 +10,7 @@ from scipy.optimize import linear_sum_assignment
 
 from mocapress.codecs.qssd.decomposition import LogSums, Products, Space, learn
 from mocapress.codecs.qssd.quaternions import Array, conjugate, exponential, logarithm, product
-from mocapress.search.joint_names import JOINTS
+from mocapress.motion.standard_joints import JOINTS
 
 ATOMS = 5
 """K."""

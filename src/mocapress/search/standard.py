@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 from mocapress.errors import UnsupportedError
 from mocapress.motion import Clip
 from mocapress.motion.kinematics import positions
-from mocapress.search.joint_names import JOINTS, REQUIRED, SIDED, by_mapping, by_names
+from mocapress.motion.standard_joints import JOINTS, REQUIRED, SIDED, by_mapping, by_names
 from mocapress.search.topology import by_topology
 
 Array = NDArray[np.float64]

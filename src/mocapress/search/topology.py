@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.motion import Skeleton
-from mocapress.search.joint_names import SIDED
+from mocapress.motion.standard_joints import SIDED
 
 Array = NDArray[np.float64]
 _LIMB = 3

@@ -26,7 +26,7 @@ def reindex(
 
     from mocapress.cli.models import open_models
     from mocapress.cli.report import message, say
-    from mocapress.search.joint_names import read_mapping
+    from mocapress.motion.standard_joints import read_mapping
 
     given = open_models(models or [])
     mapping = None if joints is None else read_mapping(joints)

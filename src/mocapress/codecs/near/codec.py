@@ -21,8 +21,10 @@ from mocapress.codecs.contract import (
     Others,
 )
 from mocapress.codecs.near.encoding import Encoder
+from mocapress.codecs.near.figure import figure_of
 from mocapress.codecs.near.goal import Goal, goal_of
 from mocapress.codecs.near.header import unpack_errors
+from mocapress.codecs.near.parts import amounts, joints_of_parts
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.units import amount
@@ -43,7 +45,7 @@ class Near(Codec):
 
     id: ClassVar[str] = "near"
     can: ClassVar[Capabilities] = Capabilities(
-        lossless=False, bounds=frozenset({Bound.LARGEST}), measured=True
+        lossless=False, names=True, bounds=frozenset({Bound.LARGEST}), measured=True
     )
 
     max: str = ""
@@ -58,11 +60,16 @@ class Near(Codec):
     """Largest error of any value, in the unit of its channel; instead of all others."""
     chunk: int = 4096
     """Frames that are decoded together."""
+    parts: str = ""
+    """Largest errors of joints and parts of the body that have their own: ``feet=0.02cm,head=1mm``.
+    """
+    rest: ClassVar[str] = "parts"
 
     def __post_init__(self) -> None:
         for name in ("max", "mean", "p"):
             if getattr(self, name):
                 amount(getattr(self, name), f"near:{name}")
+        amounts(self.parts)
         if self.p and (self.max or self.mean):
             raise ParameterError("near:p", expected="neither max nor mean beside it")
         if not isinstance(self.quality, int) or self.quality not in _QUALITIES:
@@ -74,15 +81,31 @@ class Near(Codec):
                 "near:chunk", expected=f"1 to {_MOST_FRAMES}", found=repr(self.chunk)
             )
 
-    def goal(self, skeleton: Skeleton | None, columns: Sequence[Column]) -> Goal:
-        """Give what is asked of clips with this skeleton and these columns."""
+    def goal(
+        self,
+        skeleton: Skeleton | None,
+        columns: Sequence[Column],
+        values: NDArray[np.float64] | None = None,
+    ) -> Goal:
+        """Give what is asked of clips with this skeleton and these columns.
+
+        The size of markers is that of ``values``, (F, C); it counts where a quality is asked for.
+        """
         if self.max_error < inf:
+            if self.parts:
+                raise ParameterError("near:max_error", expected="no bounds of parts beside it")
             return Goal(False, max(self.max_error / 3, 1e-9), inf)
         most, mean, precision = (
             amount(text, "near") if text else None for text in (self.max, self.mean, self.p)
         )
+        some = np.empty((0, len(columns))) if values is None else values
         return goal_of(
-            skeleton, columns, most=most, mean=mean, precision=precision, quality=self.quality
+            figure_of(skeleton, columns, some),
+            most=most,
+            mean=mean,
+            precision=precision,
+            quality=self.quality,
+            parts=amounts(self.parts),
         )
 
     def encode(
@@ -103,7 +126,7 @@ class Near(Codec):
             When what was decoded breaks a bound.
 
         """
-        goal = self.goal(skeleton, stream.columns)
+        goal = self.goal(skeleton, stream.columns, stream.values)
         return Encoder(goal, self.max_error, self.chunk, stream, skeleton).encode()
 
     def decode(
@@ -134,8 +157,13 @@ class Near(Codec):
         """Give the error up to which each column may come back; infinite where none was asked."""
         return [self.max_error] * len(columns)
 
+    def parts_of(self, clip: Clip) -> dict[str, list[int]]:
+        """Give the joints, or markers, of each part that has a bound of its own."""
+        figure = figure_of(clip.skeleton, clip.columns, clip.values[:0])
+        return joints_of_parts(figure.skeleton, amounts(self.parts)) if figure else {}
+
     def measure(self, clip: Clip, encoded: Encoded, raw_bytes: int) -> dict[str, float]:
         """Give the errors that the encoder found: of joints, in units of length, or of values."""
         in_space, mean, largest = unpack_errors(encoded.header)
-        of = "joint" if in_space else "value"
+        of = "value" if not in_space else "joint" if clip.skeleton else "marker"
         return {f"mean_{of}_error": mean, f"largest_{of}_error": largest}

@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.codecs.contract import Chunk, Encoded
-from mocapress.codecs.near.goal import Goal, Measure
+from mocapress.codecs.markers import kept_of
+from mocapress.codecs.near.figure import figure_of, tree_of
+from mocapress.codecs.near.goal import MEAN_OF_MOST, Goal, Measure
 from mocapress.codecs.near.header import COARSE, STEPS_PER_OCTAVE, joints_of, pack_header
 from mocapress.codecs.near.turning import Turning, is_known, known_turnings, nearest, turnings_of
 from mocapress.errors import VerificationError
@@ -63,15 +65,26 @@ class Encoder:
     ) -> None:
         self.goal, self.chunk = goal, chunk
         self.values = np.ascontiguousarray(stream.values, dtype=np.float64)
-        self.measure = Measure(goal, skeleton, stream.columns)
+        figure = figure_of(skeleton, stream.columns, self.values)
+        self.measure = Measure(goal, figure, stream.columns)
         self.value_most = np.full(stream.channels, max_error)
-        self.weights = np.ones(self.measure.points)
+        if figure and goal.in_space:  # what moves no joint counts as a part of the figure's size
+            moving = [figure.moves(column) for column in figure.columns]
+            self.value_most[~np.array(moving, bool)] = min(max_error, goal.most / goal.size)
+        self.kept = np.zeros(self.values.shape, np.uint8)
+        self.most = np.full(self.measure.points, goal.most)
         self.shares = self._shares(skeleton)
+        self.parts = self._parts()
+        self.weights = self.parts**-2
         self.joints = joints_of(stream.columns, skeleton)
         self.columns = stream.columns
+        if figure and figure.markers and goal.in_space:
+            self.joints = joints_of(figure.columns, tree_of(figure, self.values))
+            self.kept = kept_of(figure.markers, self.values).astype(np.uint8)
         self.rate, self.starts = _RATE, goal.in_space
         turns = goal.in_space and max_error == inf
-        self.turn(known=turns and is_known(self.measure, stream.columns, self.values), orders=turns)
+        known = turns and self.parts.min(initial=1) >= 1  # its steps are too coarse for closer ones
+        self.turn(known=known and is_known(self.measure, stream.columns, self.values), orders=turns)
 
     def turn(self, *, known: bool, orders: bool) -> None:
         """Let curves turn as the known figure's do, or, by `orders`, as is best for each joint."""
@@ -91,22 +104,25 @@ class Encoder:
         if not frames or not channels:
             return Encoded(self._header(1.0, (0.0, 0.0)), self._empty())
         scale = self._scale()
-        payloads, errors = self._chunks(scale, self.goal.most)
-        largest = float(errors.max(initial=0.0))
-        if largest > self.goal.most:
-            raise VerificationError(
-                "codec near breaks its bound; please report this",
-                expected=f"errors up to {self.goal.most:g}",
-                found=f"{largest:g}",
-            )
-        header = self._header(scale, (float(errors.mean()), largest))
+        payloads, errors = self._chunks(scale, self.most)
+        largest = errors.max(axis=0, initial=0.0)
+        for most, found in zip(self.most, largest, strict=True):
+            if found > most:
+                raise VerificationError(
+                    "codec near breaks its bound; please report this",
+                    expected=f"errors up to {most:g}",
+                    found=f"{found:g}",
+                )
+        header = self._header(scale, (float(errors.mean()), float(largest.max())))
         return Encoded(header, tuple(payloads))
 
     def _empty(self) -> tuple[Chunk, ...]:
         """Chunks of frames without channels."""
         return tuple(
             Chunk(
-                first, min(self.chunk, len(self.values) - first), self._payload(first, 1.0, inf)[0]
+                first,
+                min(self.chunk, len(self.values) - first),
+                self._payload(first, 1.0, self.most)[0],
             )
             for first in range(0, len(self.values), self.chunk)
         )
@@ -134,6 +150,15 @@ class Encoder:
             inner = {joint.parent for joint in skeleton.joints}
             shares[:] = [_INNER if j in inner else _OUTER for j in range(len(shares))]
         return shares
+
+    def _parts(self) -> NDArray[np.float64]:
+        """Give how many times the usual largest error each point may have, (P,)."""
+        usual = self.goal.most if self.goal.most < inf else self.goal.mean / MEAN_OF_MOST
+        parts = np.ones(self.measure.points)
+        for joint, most in self.goal.of_joints:
+            self.most[joint] = most
+            parts[joint] = most / usual
+        return parts
 
     def _weigh(self, weights: NDArray[np.float64]) -> None:
         self.weights = weights
@@ -182,7 +207,9 @@ class Encoder:
             self.known,
         )
 
-    def _payload(self, first: int, scale: float, most: float) -> tuple[bytes, NDArray[np.float64]]:
+    def _payload(
+        self, first: int, scale: float, most: NDArray[np.float64]
+    ) -> tuple[bytes, NDArray[np.float64]]:
         payload, _, errors = _core.near_encode(
             self.measure.core,
             self.curves,
@@ -193,11 +220,14 @@ class Encoder:
             self.weights,
             most,
             self.value_most,
+            self.kept[first : first + self.chunk],
             3,
         )
         return payload, errors
 
-    def _chunks(self, scale: float, most: float) -> tuple[list[Chunk], NDArray[np.float64]]:
+    def _chunks(
+        self, scale: float, most: NDArray[np.float64]
+    ) -> tuple[list[Chunk], NDArray[np.float64]]:
         chunks, errors = [], []
         for first in range(0, len(self.values), self.chunk):
             payload, found = self._payload(first, scale, most)
@@ -208,12 +238,14 @@ class Encoder:
     def _scale(self) -> float:
         """Find the scale at which the mean error is the goal's."""
         scale, tried = self.goal.mean * _SCALE_OF_MEAN, list[_Try]()
+        unbounded = np.full(self.measure.points, inf)
         for _ in range(_TRIES):
-            errors = self._chunks(scale, inf)[1]
-            mean = float(errors.mean())
+            errors = self._chunks(scale, unbounded)[1]
+            relative = errors / self.parts
+            mean = float((errors if self.goal.is_mean_asked else relative).mean())
             if mean <= 0:
                 return scale
-            off, excess = log(mean / self.goal.mean), self._excess(errors)
+            off, excess = log(mean / self.goal.mean), self._excess(relative)
             tried.append(_Try(off, float(excess.max()), scale, self.weights))
             if tried[-1].lack <= 0:
                 break

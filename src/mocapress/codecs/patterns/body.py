@@ -7,14 +7,13 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapress.codecs.patterns.hierarchy import NONE, Hierarchy, Markers
+from mocapress.codecs.markers import Markers, kept_of
+from mocapress.codecs.patterns.hierarchy import NONE, Hierarchy
 from mocapress.errors import ParameterError
 from mocapress.records import Reader, Writer
 
 Array = NDArray[np.float64]
 _TRACK, _PROTECTED, _COPY, _FIRST_GROUP = range(4)
-_FAR = 1e12
-"""Larger numbers are no motion; they come back as they are."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,17 +179,9 @@ def copies_of(markers: Markers, values: Array, root: int) -> dict[int, int]:
 def filled_of(markers: Markers, values: Array) -> tuple[Array, NDArray[np.uint8]]:
     """Give values that are finite everywhere, and which must come back as they are, (F, C).
 
-    A marker that is at 0, 0, 0 or has no finite place is missing: it comes back as it is, and
-    stands for nothing else. Its place is taken from the frames around.
+    The place of a marker that is missing is taken from the frames around.
     """
-    with np.errstate(invalid="ignore"):
-        kept = ~(np.abs(values) < _FAR)
-    for first in markers.first:
-        own = values[:, first : first + 3]
-        gone = kept[:, first : first + 3].any(axis=1) | (own == 0).all(axis=1)
-        # A marker that never moves from 0, 0, 0 is one.
-        if not gone.all() or kept[:, first : first + 3].any():
-            kept[gone, first : first + 3] = True
+    kept = kept_of(markers, values)
     filled = np.array(values)
     for column in np.flatnonzero(kept.any(axis=0)):
         there = np.flatnonzero(~kept[:, column])

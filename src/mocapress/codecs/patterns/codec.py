@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import inf, isfinite
-from typing import Any, ClassVar
+from typing import ClassVar, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,18 +21,18 @@ from mocapress.codecs.contract import (
     Model,
     Others,
 )
+from mocapress.codecs.markers import markers_of
 from mocapress.codecs.patterns.clustering import LARGEST, MEAN
 from mocapress.codecs.patterns.encoding import Job, unpack_facts
-from mocapress.codecs.patterns.hierarchy import AUTOMATIC, markers_of
+from mocapress.codecs.patterns.hierarchy import AUTOMATIC
 from mocapress.codecs.patterns.segmentation import DISTANCE, PCA, RATIO
 from mocapress.errors import ParameterError, UnsupportedError
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.lengths import bones
 from mocapress.motion.markers import POINTS, joints_as_points
-from mocapress.motion.units import centimetres_per_unit
+from mocapress.motion.units import LENGTHS, centimetres_in, centimetres_per_unit
 
 _MOST_FRAMES = 2**20
-_MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
 _AMOUNT = re.compile(r"(?=.*[1-9])(\d{1,9}(?:\.\d*)?|\.\d+)(mm|cm|m)?")
 
 
@@ -142,9 +142,12 @@ class Patterns(Codec):
         if found is None:
             return 0.0
         number, own = float(found[1]), found[2]
-        if own and unit not in _MILLIMETRES:
+        if not own:
+            return number
+        centimetres = centimetres_in(unit)
+        if centimetres is None:
             self._refuse("arms", "a number without a unit, as the file does not say its own")
-        return number * _MILLIMETRES[own] / _MILLIMETRES[unit] if own else number
+        return number * LENGTHS[own] / centimetres
 
     def marker_weights(self) -> dict[str, float]:
         """Give the weights that are not 1, by the names of markers."""
@@ -259,6 +262,6 @@ class Patterns(Codec):
             raise ParameterError("nothing to learn from", expected="at least one clip")
         return Model(self.id, job.model(seen))
 
-    def _refuse(self, name: str, expected: str) -> Any:
+    def _refuse(self, name: str, expected: str) -> NoReturn:
         found = repr(getattr(self, name))
         raise ParameterError(f"patterns:{name}", expected=expected, found=found)

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.codecs.contract import Chunk, Encoded, Model
+from mocapress.codecs.markers import Markers, markers_of
 from mocapress.codecs.patterns.body import Body, body_of, copies_of, filled_of
 from mocapress.codecs.patterns.database import Node, Rules, database_of, node_of, segments_of
-from mocapress.codecs.patterns.hierarchy import Markers, head_diagonal, hierarchy_of, markers_of
+from mocapress.codecs.patterns.hierarchy import head_diagonal, hierarchy_of
 from mocapress.codecs.patterns.segmentation import RATIO
 from mocapress.errors import CorruptError
 from mocapress.motion import Skeleton, Stream

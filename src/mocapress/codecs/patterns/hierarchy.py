@@ -2,15 +2,16 @@
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapress.codecs.markers import Markers
 from mocapress.errors import ParameterError
-from mocapress.motion import Column, Skeleton
+from mocapress.motion import Skeleton
 
 Array = NDArray[np.float64]
 AUTOMATIC, VICON, JOINTS, RIGID = "auto", "vicon", "joints", "rigid"
@@ -18,7 +19,6 @@ NONE = -1
 _MOST_OF_CHAIN = 3
 _MARKERS_PER_NODE = 3.5
 _MOST_LOOKED_AT = 500
-_COLUMNS_PER_NODE = 6
 
 # The reference marker and the markers of each body part, of the CMU/Vicon 41-marker set and of
 # Plug-in-Gait (Fig. 4 of the paper); a marker that a set lacks is left out.
@@ -60,52 +60,6 @@ class Hierarchy:
     root: int
     """The marker whose trajectory is coded as it is; ``NONE`` where there is none."""
     parts: tuple[Part, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Markers:
-    """How columns are points in space."""
-
-    names: tuple[str, ...]
-    """Without what stands before a colon."""
-    first: tuple[int, ...]
-    """The column of each marker's x; y and z follow."""
-    others: tuple[tuple[int, ...], ...]
-    """Columns of no marker, in groups that move together."""
-
-    def places(self, values: Array) -> Array:
-        """Give (F, P, 3) of (F, C) values."""
-        found: Array = values[:, np.array(self.columns, dtype=np.intp)]
-        return found.reshape(len(values), len(self.first), 3)
-
-    @property
-    def columns(self) -> list[int]:
-        """The columns of all markers."""
-        return [c + i for c in self.first for i in range(3)]
-
-
-def markers_of(columns: Sequence[Column]) -> Markers:
-    """Find the markers among columns: x, y and z of the same name one behind the other."""
-    names, first, others = [], [], []
-    c = 0
-    while c < len(columns):
-        own = [column.name.rpartition(".")[0] for column in columns[c : c + 3]]
-        if [column.kind for column in columns[c : c + 3]] == ["x", "y", "z"] and len(set(own)) == 1:
-            names.append(own[0].rpartition(":")[2])
-            first.append(c)
-            c += 3
-        else:
-            others.append(c)
-            c += 1
-    groups: list[list[int]] = []
-    for c in others:
-        last = groups[-1] if groups else []
-        together = last and last[-1] == c - 1 and columns[last[-1]].joint == columns[c].joint
-        if together and len(last) < _COLUMNS_PER_NODE:
-            last.append(c)
-        else:
-            groups.append([c])
-    return Markers(tuple(names), tuple(first), tuple(map(tuple, groups)))
 
 
 def hierarchy_of(
