@@ -41,6 +41,20 @@ def test_the_same_motion_of_another_skeleton_and_rate_is_found_first(
         assert places(query, kept)[0] == seed
 
 
+@pytest.mark.parametrize("speed", [1 / 1.5, 1.5])
+def test_motion_at_another_speed_is_found(kept: list[Entry], speed: float) -> None:
+    def played(clip: Clip) -> Entry:
+        assert clip.frame_time is not None
+        return entry(clip.with_frames(clip.values, clip.frame_time / speed))
+
+    for seed in range(8):
+        assert places(played(person(seed)), kept)[0] == seed
+    long = [entry(person(seed, frames=300)) for seed in range(4)]
+    hit = find(played(person(1, frames=300)[100:160]), enumerate(one.features for one in long))[0]
+    assert hit.place == 1
+    assert (hit.start * 30, hit.end * 30) == pytest.approx((100, 160), abs=8)
+
+
 def test_as_many_are_found_as_are_wanted_and_there(kept: list[Entry]) -> None:
     assert len(places(kept[0], kept, 3)) == 3
     assert sorted(places(kept[0], kept, 100)) == [*range(8)]
@@ -145,6 +159,7 @@ def test_a_stretch_is_found_where_it_is(start: int, end: int) -> None:
     assert hits[0].place == 1
     assert hits[0].start * 30 == pytest.approx(start, abs=4)
     assert hits[0].end * 30 == pytest.approx(end, abs=4)
+    assert hits[0].score < 0.5 * hits[1].score
     assert [hit.score for hit in hits] == sorted(hit.score for hit in hits)
 
 

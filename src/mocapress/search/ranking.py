@@ -40,6 +40,9 @@ _CLEAR = 0.73
 """Part of the usual cost, the median over all frames, below which a stretch is an example."""
 _OWN = 0.3
 """Weight of the query itself beside the mean of examples."""
+_MOST_TIMES = 4.0
+"""How many times the cost of aligning a stretch with the query its score is at most, so that the
+score of a copy is near 0."""
 _SIGNED_STRETCH = 1100.0
 """Distance of signatures that counts as much as a cost of 1."""
 _NONE = np.empty(0, np.float32)
@@ -162,7 +165,9 @@ def find(query: Entry, features: Iterable[tuple[int, bytes]], top: int = 20) -> 
             costs[number] = _OWN * costs[number] + (1 - _OWN) * np.mean(others, axis=0)
     again = [(own, starts) for own, (_, starts) in zip(costs, matches, strict=True)]
     hits = _stretches(again, max(CLOSELY, top))
-    scores = _scores(wanted, records, hits)
+    own = np.array([matches[hit.record][0][hit.last] for hit in hits])
+    judged = _scores(wanted, records, hits)
+    scores = np.minimum(judged, _MOST_TIMES * own)
     order = np.argsort(scores, kind="stable")[:top]
     seconds = EVERY / RATE
     return [
@@ -224,10 +229,11 @@ def _scores(wanted: Features, records: Sequence[tuple[int, bytes]], hits: list[_
             read[hit.record] = read_record(records[hit.record][1])
         made[number] = projected(read[hit.record][hit.first : hit.last + 1].astype(np.float64))
     own = np.linalg.norm(made - projected(wanted.astype(np.float64)), axis=1)
-    scores = np.array([hit.cost for hit in hits]) + own / _SIGNED_STRETCH
+    apart = np.array([np.linalg.norm(made - one, axis=1) for one in made])
+    crowded = _spread(apart / _SIGNED) ** _CROWDED
+    scores = (np.array([hit.cost for hit in hits]) + own / _SIGNED_STRETCH) / crowded
     best = np.argsort(scores, kind="stable")[:_EXAMPLES]
-    theirs = [np.linalg.norm(made - made[i], axis=1) for i in best]
-    added: Array = scores + np.mean(theirs, axis=0) / _SIGNED_STRETCH
+    added: Array = scores + apart[best].mean(axis=0) / _SIGNED_STRETCH / crowded
     return added
 
 
