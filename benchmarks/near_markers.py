@@ -3,7 +3,7 @@
     python benchmarks/near_markers.py CORPUS [--frames 12000] [--arms 6.5]
 
 The markers are the joints of CMU subject 16, in mm, as in `mocapress bench patterns`, and those of
-a C3D of HDM05. Bytes are those of codec header and payloads; ratios are to the text that `bench
+a few C3D. Bytes are those of codec header and payloads; ratios are to the text that `bench
 patterns` counts. `largest` is the largest distance of any marker in any frame.
 """
 
