@@ -3,9 +3,10 @@
 Usage: python benchmarks/mrpa_guard.py FOLDER [FOLDER ...]
 
 Of each folder, the clips of the same columns are a library, each group by itself. Bytes are those
-of all chunks, with 32 for each frame range that they need. The second table says which share of all
-pieces of columns takes which alpha and beta: of these libraries, and of edited copies of parts of
-the first takes (``mocapress_bench/mrpa_planted.py``), where there are parents.
+of the codec's headers and of all chunks, with 32 for each frame range that they need. The second
+table says how many chunks are coded as APP codes them, and which share of all pieces of columns in
+others takes which alpha and beta: of these libraries, and of edited copies of parts of the first
+takes (``mocapress_bench/mrpa_planted.py``), where there are parents.
 """
 
 import sys
@@ -28,6 +29,7 @@ from mocapress_bench.tables import markdown
 
 ALPHAS = ("0", "0.25", "0.5", "0.75", "0.875", "1", "1.25")
 BETAS = ("0", "0.125", "0.25", "0.375", "0.5", "0.625", "0.75", "1")
+AS_APP = -1
 TAKES = 6
 Taken = Counter[tuple[int, int | None]]
 
@@ -43,9 +45,9 @@ def groups_of(folder: Path) -> list[list[Clip]]:
 
 
 def bytes_of(clips: Sequence[Clip], spec: str) -> int:
-    """Give the bytes of all chunks of clips that are coded one by one."""
+    """Give the bytes of clips that are coded one by one."""
     made = [codec(spec).encode(clip.main, skeleton=clip.skeleton) for clip in clips]
-    return sum(len(chunk.payload) for one in made for chunk in one.chunks)
+    return size_of(Together(tuple(made), {}))
 
 
 def taken(streams: Sequence[Stream], made: Together, counts: Taken) -> None:
@@ -71,6 +73,9 @@ def _count(
         rows = values[chunk.first : chunk.first + chunk.frames]
         reader = Reader(chunk.payload, "chunk")
         pieces = coding.read_pieces(reader, chunk, len(plan), others)
+        if not pieces:
+            counts[AS_APP, None] += 1
+            continue
         table, beside = coding.table_of(pieces), coding.beside(rows, pieces)
         found = np.array(_core.mrpa_weights(rows, beside, table, plan))
         for n, (alpha, beta) in enumerate(found.reshape(-1, 2).tolist()):
@@ -80,11 +85,13 @@ def _count(
 
 def shares(counts: Taken) -> list[str]:
     """Give the shares of alphas without a parent, and of betas with one, in percent."""
-    alone = sum(n for (_, beta), n in counts.items() if beta is None)
+    as_app = counts[AS_APP, None]
+    alone = sum(n for (_, beta), n in counts.items() if beta is None) - as_app
     beside = sum(counts.values()) - alone
     first = [f"{100 * counts[a, None] / alone:.1f}" if alone else "" for a in range(len(ALPHAS))]
     of = [sum(n for (_, beta), n in counts.items() if beta == b) for b in range(len(BETAS))]
     return [
+        str(as_app),
         str(alone),
         *first,
         str(beside),
@@ -127,7 +134,7 @@ def main() -> None:
         together = made.encode_together(copies.streams, skeleton=takes[0].skeleton)
         taken(copies.streams, together, planted)
     head = ["pieces of columns", "takes", "edited copies"]
-    names = ["without a parent", *(f"α = {a}, %" for a in ALPHAS)]
+    names = ["chunks as of APP", "without a parent", *(f"α = {a}, %" for a in ALPHAS)]
     names += ["with a parent", *(f"β = {b}, %" for b in BETAS)]
     both = zip(names, shares(raw), shares(planted), strict=True)
     print(markdown(head, [list(cells) for cells in both]))

@@ -33,7 +33,7 @@ def savings(
     """Give bits a value without parents, and the two savings in percent."""
     values = np.ascontiguousarray(np.concatenate(clips))
     ids = np.repeat(np.arange(len(clips)), [len(clip) for clip in clips])
-    _, plan = coding.pack_header(values, columns)
+    plan = coding.plan_for(values, columns, None)
     inside = np.flatnonzero(ids[: -PIECE - 2] == ids[PIECE + 2 :])
     candidates = inside[::STRIDE] + 2
     alone = saved = kept = 0.0

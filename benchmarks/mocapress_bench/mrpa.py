@@ -84,7 +84,7 @@ def published_bytes(
 
     """
     values = library.values
-    _, plan = coding.pack_header(values, library.clips[0].columns)
+    plan = coding.plan_for(values, library.clips[0].columns, None)
     pieces = []
     for segment, (first, last) in enumerate(built.segments.tolist()):
         parent = None

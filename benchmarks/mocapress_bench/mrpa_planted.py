@@ -93,7 +93,7 @@ def measure_planted(takes: Sequence[Clip]) -> dict[str, Any]:
         replace(codec, depth=0).encode_together(made.streams, skeleton=takes[0].skeleton)
     )
     own = size_of(codec.encode_together(made.streams, skeleton=takes[0].skeleton))
-    oracle = size_of(encode_spans(codec, made.streams, made.starts, spans))
+    oracle = size_of(encode_spans(codec, made.streams, takes[0].skeleton, made.starts, spans))
     return {
         "frames": int(made.starts[-1]),
         "planted": len(made.pairs),
@@ -106,6 +106,7 @@ def measure_planted(takes: Sequence[Clip]) -> dict[str, Any]:
 
 
 def size_of(made: Together) -> int:
-    """Give the bytes of all chunks, with what they need."""
+    """Give the bytes of the codec's headers and of all chunks, with what they need."""
     chunks = [chunk for encoded in made.encoded for chunk in encoded.chunks]
-    return sum(len(chunk.payload) + 32 * len(chunk.needs) for chunk in chunks)
+    heads = sum(len(encoded.header) for encoded in made.encoded)
+    return heads + sum(len(chunk.payload) + 32 * len(chunk.needs) for chunk in chunks)

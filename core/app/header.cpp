@@ -1,7 +1,6 @@
 #include "app/header.hpp"
 
 #include "coding/fail.hpp"
-#include "coding/record.hpp"
 
 namespace mocapress::app {
 namespace {
@@ -50,17 +49,23 @@ Column column_of(const NumberFormat& format, std::uint64_t precision) {
   return {-1, static_cast<Precision>(precision), line, digits};
 }
 
+std::vector<std::int32_t> read_parents(Record& record, std::size_t columns) {
+  const auto distances = record.runs(columns, 2 * columns);
+  std::vector<std::int32_t> parents(columns);
+  for (std::size_t c = 0; c < columns; ++c) parents[c] = parent_of(c, distances[c], columns);
+  return parents;
+}
+
 std::vector<Column> read_header(ByteView header, std::span<const NumberFormat> formats) {
   Record record(header);
-  const std::size_t count = formats.size();
-  const auto distances = record.runs(count, 2 * count);
-  const auto precisions = record.runs(count, static_cast<int>(Precision::snapped32));
+  const auto parents = read_parents(record, formats.size());
+  const auto precisions = record.runs(formats.size(), static_cast<int>(Precision::snapped32));
   record.end();
   std::vector<Column> columns;
-  columns.reserve(count);
-  for (std::size_t c = 0; c < count; ++c) {
+  columns.reserve(formats.size());
+  for (std::size_t c = 0; c < formats.size(); ++c) {
     columns.push_back(column_of(formats[c], precisions[c]));
-    columns.back().parent = parent_of(c, distances[c], count);
+    columns.back().parent = parents[c];
   }
   return columns;
 }

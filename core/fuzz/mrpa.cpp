@@ -70,7 +70,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<app::Column> columns(input.below(9));
   const int limit = 1 + static_cast<int>(input.below(53));
   for (auto& column : columns) {
-    column.parent = -1;
+    column.parent = static_cast<std::int32_t>(&column - columns.data()) - 1;
     column.precision = static_cast<app::Precision>(input.below(3));
     const auto line = static_cast<int>(input.below(7));
     column.digits = static_cast<int>(input.below(30)) - 2;
@@ -86,7 +86,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         [&] { mrpa::decode(payload, decoded.data(), parents.data(), pieces, columns, limit); });
   };
   if (what == 0) {
-    done([&] { mrpa::read_pieces(input.rest(), frames); });
+    done([&] { mrpa::decode_alone(input.rest(), decoded.data(), frames, columns, limit); });
     decodes(input.rest());
     return 0;
   }

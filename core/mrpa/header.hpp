@@ -1,10 +1,9 @@
-// MRPA's header and the front of its chunks (docs/format.md, "mrpa"), as far as a decoder without a
-// library reads them.
+// MRPA's header and its chunks (docs/format.md, "mrpa"), as far as a decoder without a library
+// reads them.
 #pragma once
 
 #include <cstddef>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "app/codec.hpp"
@@ -18,8 +17,9 @@ namespace mocapress::mrpa {
 // one of so many columns.
 std::vector<app::Column> read_header(ByteView header, std::span<const NumberFormat> formats);
 
-// The pieces of a chunk of so many frames, and what follows them. `fail`s where they are not so
-// many, or need frames of other chunks.
-std::pair<std::vector<Piece>, ByteView> read_pieces(ByteView payload, std::size_t frames);
+// Fills `values` from a chunk of so many frames. `fail`s where it is none, or needs frames of other
+// chunks.
+void decode_alone(ByteView payload, double* values, std::size_t frames,
+                  std::span<const app::Column> columns, int mantissa_limit);
 
 }  // namespace mocapress::mrpa

@@ -12,8 +12,8 @@ void decode(const Request& request, double* values) {
     formats[c].digits = request.formats[2 * c + 1];
   }
   const auto columns = mrpa::read_header(request.header, formats);
-  const auto [pieces, coded] = mrpa::read_pieces(request.payload, request.frames);
-  mrpa::decode(coded, values, nullptr, pieces, columns, static_cast<int>(request.parameters[0]));
+  mrpa::decode_alone(request.payload, values, request.frames, columns,
+                     static_cast<int>(request.parameters[0]));
 }
 
 }  // namespace mocapress::wasm

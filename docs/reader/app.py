@@ -80,10 +80,7 @@ def decode(
     record = Record(header)
     codes, precisions = (record.list_in_runs(len(formats)) for _ in range(2))
     record.end()
-    parents = [
-        None if code == 0 else column - code // 2 if code % 2 == 0 else column + (code + 1) // 2
-        for column, code in enumerate(codes)
-    ]
+    parents = parents_of(codes)
     cluster = int(parameters.get("t", "15"))
     limit = int(parameters.get("mantissa_limit", "12"))
     alphas = TABLES[parameters.get("table", "k3-non-uniform")]
@@ -96,6 +93,14 @@ def decode(
                 columns[column] = [rounded(m, grid, digits + more) for m in columns[column]]
         rows += [list(row) for row in zip(*columns, strict=True)]
     return rows
+
+
+def parents_of(codes: list[int]) -> list[int | None]:
+    """Give each column's parent."""
+    return [
+        None if code == 0 else column - code // 2 if code % 2 == 0 else column + (code + 1) // 2
+        for column, code in enumerate(codes)
+    ]
 
 
 def chunk_columns(

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+import app
 from app import ROUNDED, Floats, difference
 from lines import rounded
 from records import CorruptError, Record
@@ -28,11 +29,13 @@ def decode(
     """
     record = Record(header)
     precisions = record.list_in_runs(len(formats))
+    left = len(header) > record.at
+    parents = app.parents_of(record.list_in_runs(len(formats))) if left else []
     record.end()
     limit = int(parameters.get("mantissa_limit", "53"))
     rows = []
     for frames, payload in chunks:
-        columns = chunk_columns(payload, frames, precisions, limit, needed)
+        columns = chunk_columns(payload, frames, parents, precisions, limit, needed)
         for column, (kind, digits) in enumerate(formats):
             if precisions[column] == 2 and kind in ROUNDED:
                 grid, more = ROUNDED[kind]
@@ -42,11 +45,22 @@ def decode(
 
 
 def chunk_columns(
-    payload: bytes, frames: int, precisions: list[int], limit: int, needed: Sequence[Rows]
+    payload: bytes,
+    frames: int,
+    parents: list[int | None],
+    precisions: list[int],
+    limit: int,
+    needed: Sequence[Rows],
 ) -> list[list[float]]:
     """Decode a chunk, column by column."""
     record = Record(payload)
     pieces = [read_piece(record, needed) for _ in range(record.integer())]
+    if frames and not pieces:
+        limit = record.integer()
+        coded = record.raw(len(payload) - record.at)
+        table = app.TABLES["k3-non-uniform"]
+        found = app.chunk_columns(coded, frames, parents, precisions, table, 15, limit)
+        return [found[c] for c in range(len(precisions))]
     if sum(count for count, _ in pieces) != frames:
         raise CorruptError("the pieces are not the frames of the chunk")
     stream = Coded(record.raw(len(payload) - record.at))

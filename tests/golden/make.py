@@ -113,6 +113,7 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     ),
     "v1_walk.bvh": (WALK_BVH, "app:mantissa_limit=53,chunk=90", {}),
     "v1_mrpa.amc": (WALK_AMC, "mrpa:chunk=75", {}),
+    "v1_couplings_mrpa.bvh": (clips.couplings(), "mrpa:chunk=30", {}),
     "v1_bytes.bin": (bytes(range(256)) * 3, "exact", {}),
     "v1_exact.amc": (WALK_AMC, "exact:chunk=80", {}),
     "v1_exact_strong.amc": (WALK_LF, "exact:level=9,chunk=100", {}),

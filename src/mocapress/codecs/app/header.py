@@ -16,9 +16,30 @@ PRECISIONS = 3
 def pack_header(parents: Sequence[int], precisions: Sequence[int]) -> bytes:
     """Make the header of columns with these parents (-1 for none) and precisions."""
     writer = Writer()
-    writer.runs([_distance(column, parent) for column, parent in enumerate(parents)])
+    write_parents(writer, parents)
     writer.runs(precisions)
     return bytes(writer.data)
+
+
+def write_parents(writer: Writer, parents: Sequence[int]) -> None:
+    """Append the parent of each column."""
+    writer.runs([_distance(column, parent) for column, parent in enumerate(parents)])
+
+
+def read_parents(reader: Reader, columns: int) -> list[int]:
+    """Take the parents of so many columns off.
+
+    Raises
+    ------
+    CorruptError
+        When they are no columns.
+
+    """
+    distances = reader.runs(columns, 2 * columns).tolist()
+    parents = [_parent(column, distance) for column, distance in enumerate(distances)]
+    if any(not -1 <= parent < columns for parent in parents):
+        raise reader.fail("a parent that is no column")
+    return parents
 
 
 def unpack_header(header: bytes, columns: int) -> tuple[list[int], list[int]]:
@@ -31,12 +52,9 @@ def unpack_header(header: bytes, columns: int) -> tuple[list[int], list[int]]:
 
     """
     reader = Reader(header, "APP header")
-    distances = reader.runs(columns, 2 * columns).tolist()
+    parents = read_parents(reader, columns)
     precisions = reader.runs(columns, PRECISIONS - 1).tolist()
     reader.end()
-    parents = [_parent(column, distance) for column, distance in enumerate(distances)]
-    if any(not -1 <= parent < columns for parent in parents):
-        raise reader.fail("a parent that is no column")
     return parents, precisions
 
 

@@ -92,7 +92,7 @@ class Mrpa(Codec):
     ) -> Encoded:
         """Code a stream without parents; ``encode_together`` finds them."""
         values = np.ascontiguousarray(stream.values, dtype=np.float64)
-        header, plan = coding.pack_header(values, stream.columns)
+        plan = coding.plan_for(values, stream.columns, skeleton)
         chunks = []
         for first in range(0, stream.frames, self.chunk):
             rows = values[first : first + self.chunk]
@@ -100,7 +100,7 @@ class Mrpa(Codec):
             chunks.append(
                 coding.encode_chunk(first, rows, pieces, plan, self.mantissa_limit, self.choice)
             )
-        return Encoded(header, tuple(chunks))
+        return Encoded(coding.pack_header(plan, chunks), tuple(chunks))
 
     def encode_together(
         self, streams: Sequence[Stream], *, skeleton: Skeleton | None = None

@@ -9,10 +9,12 @@ from numpy.typing import NDArray
 
 from mocapress import _core
 from mocapress.codecs.app.coding import make_plan
-from mocapress.codecs.app.header import PRECISIONS
+from mocapress.codecs.app.header import PRECISIONS, read_parents, write_parents
+from mocapress.codecs.app.parents import parent_columns
+from mocapress.codecs.app.tables import ALPHA_TABLES
 from mocapress.codecs.contract import Chunk, Others, digest_of
 from mocapress.errors import CorruptError
-from mocapress.motion import Column
+from mocapress.motion import Column, Skeleton
 from mocapress.records import Reader, Writer
 
 Values = NDArray[np.float64]
@@ -20,6 +22,10 @@ Plan = NDArray[np.int32]
 
 PUBLISHED, PREVIOUS, BEST = range(3)
 """How predictions are chosen: ``Choice`` of core/mrpa/codec.hpp."""
+_APP_TABLE = np.array(ALPHA_TABLES["k3-non-uniform"], np.float64)
+_APP_CLUSTER = 15
+_APP_LIMIT = 12
+_MOST_LIMIT = 53
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,17 +45,20 @@ class Piece(NamedTuple):
     parent: Parent | None = None
 
 
-def plan_of(columns: Sequence[Column], precisions: Sequence[int]) -> Plan:
-    """Give the plan of the compiled coder, in which no column predicts another."""
-    return make_plan(columns, [-1] * len(columns), precisions)
+def plan_for(values: Values, columns: Sequence[Column], skeleton: Skeleton | None) -> Plan:
+    """Give the plan of the compiled coder, in which parents of columns are those of APP."""
+    plan = make_plan(columns, parent_columns(columns, skeleton), [0] * len(columns))
+    plan[:, 1] = _core.app_precisions(values, plan)
+    return plan
 
 
-def pack_header(values: Values, columns: Sequence[Column]) -> tuple[bytes, Plan]:
-    """Give the codec's header, the precision of every column, and the plan."""
-    precisions = _core.app_precisions(values, plan_of(columns, [0] * len(columns)))
+def pack_header(plan: Plan, chunks: Sequence[Chunk]) -> bytes:
+    """Give the codec's header: the precisions, and the parents of columns where chunks use them."""
     writer = Writer()
-    writer.runs(precisions)
-    return bytes(writer.data), plan_of(columns, precisions)
+    writer.runs(plan[:, 1].tolist())
+    if any(chunk.payload[:1] == b"\0" for chunk in chunks):
+        write_parents(writer, plan[:, 0].tolist())
+    return bytes(writer.data)
 
 
 def unpack_header(header: bytes, columns: Sequence[Column]) -> Plan:
@@ -63,8 +72,9 @@ def unpack_header(header: bytes, columns: Sequence[Column]) -> Plan:
     """
     reader = Reader(header, "MRPA header")
     precisions = reader.runs(len(columns), PRECISIONS - 1).tolist()
+    parents = read_parents(reader, len(columns)) if reader.left else [-1] * len(columns)
     reader.end()
-    return plan_of(columns, precisions)
+    return make_plan(columns, parents, precisions)
 
 
 def beside(values: Values, pieces: Sequence[Piece]) -> Values:
@@ -87,7 +97,10 @@ def table_of(pieces: Sequence[Piece], *, fresh: bool = False) -> NDArray[np.int6
 def encode_chunk(
     first: int, values: Values, pieces: Sequence[Piece], plan: Plan, limit: int, choice: int
 ) -> Chunk:
-    """Code a chunk of (F, C) values; its parents become its needs."""
+    """Code a chunk of (F, C) values; its parents become its needs.
+
+    The best of one that has none may be as APP codes it.
+    """
     writer = Writer()
     writer.integer(len(pieces))
     needs: dict[bytes, int] = {}
@@ -101,7 +114,20 @@ def encode_chunk(
         writer.integer(int(piece.parent.at[0]))
         writer.bytes(_core.encode_differences(np.diff(piece.parent.at) - 1))
     coded = _core.mrpa_encode(values, beside(values, pieces), table_of(pieces), plan, limit, choice)
-    return Chunk(first, len(values), bytes(writer.data) + coded, needs=tuple(needs))
+    payload = bytes(writer.data) + coded
+    if choice == BEST and not needs:
+        payload = min([payload, *_as_app(values, plan, limit)], key=len)
+    return Chunk(first, len(values), payload, needs=tuple(needs))
+
+
+def _as_app(values: Values, plan: Plan, limit: int) -> list[bytes]:
+    """Code a chunk as APP does, in context and as published; nothing where it has no frames."""
+    if not len(values):
+        return []
+    return [
+        bytes([0, each]) + _core.app_encode(values, plan, _APP_TABLE, _APP_CLUSTER, each)
+        for each in {limit, _APP_LIMIT}
+    ]
 
 
 def decode_chunk(chunk: Chunk, plan: Plan, limit: int, others: Others) -> Values:
@@ -116,17 +142,25 @@ def decode_chunk(chunk: Chunk, plan: Plan, limit: int, others: Others) -> Values
     reader = Reader(chunk.payload, f"MRPA chunk from frame {chunk.first}")
     pieces = read_pieces(reader, chunk, len(plan), others)
     values = np.empty((chunk.frames, len(plan)))
+    as_app = chunk.frames and not pieces
+    if as_app:
+        limit = reader.integer(_MOST_LIMIT)
+        if not limit:
+            raise reader.fail("no limit of mantissas")
+    rest = reader.raw(reader.left)
     try:
-        parents = beside(values, pieces)
-        rest = reader.raw(reader.left)
-        _core.mrpa_decode(rest, values, parents, table_of(pieces), plan, limit)
+        if as_app:
+            _core.app_decode(rest, values, plan, _APP_TABLE, _APP_CLUSTER, limit)
+        else:
+            parents = beside(values, pieces)
+            _core.mrpa_decode(rest, values, parents, table_of(pieces), plan, limit)
     except ValueError as error:
         raise reader.fail(str(error)) from error
     return values
 
 
 def read_pieces(reader: Reader, chunk: Chunk, channels: int, others: Others) -> list[Piece]:
-    """Read what stands before the values of a chunk.
+    """Read what stands before the values of a chunk; no pieces where it is as of APP.
 
     Raises
     ------
@@ -141,7 +175,7 @@ def read_pieces(reader: Reader, chunk: Chunk, channels: int, others: Others) -> 
         left -= frames
         parent = _read_parent(reader, chunk, frames, channels, others)
         pieces.append(Piece(frames, parent))
-    if left:
+    if left and pieces:
         raise reader.fail(f"{left} frames are in no piece")
     return pieces
 

@@ -56,7 +56,7 @@ def encode_together(
         spans = published_spans(found, codec.depth)
     else:
         spans = best_spans(found, codec.chunk)
-    return encode_spans(codec, streams, found.starts, spans)
+    return encode_spans(codec, streams, skeleton, found.starts, spans)
 
 
 def published_spans(found: Patterns, depth: int) -> list[Span]:
@@ -151,22 +151,27 @@ class _Library:
 
 
 def encode_spans(
-    codec: "Mrpa", streams: Sequence[Stream], starts: NDArray[np.int64], spans: Sequence[Span]
+    codec: "Mrpa",
+    streams: Sequence[Stream],
+    skeleton: Skeleton | None,
+    starts: NDArray[np.int64],
+    spans: Sequence[Span],
 ) -> Together:
     """Code chunks in their order: each parent lies in chunks that come before."""
     values = [np.ascontiguousarray(stream.values, dtype=np.float64) for stream in streams]
-    heads = [
-        coding.pack_header(own, stream.columns) for own, stream in zip(values, streams, strict=True)
+    plans = [
+        coding.plan_for(own, stream.columns, skeleton)
+        for own, stream in zip(values, streams, strict=True)
     ]
     levels = np.zeros(int(starts[-1]), np.int64)
-    library = _Library(codec, values, starts, [plan for _, plan in heads], levels)
+    library = _Library(codec, values, starts, plans, levels)
     chunks: list[list[Chunk]] = [[] for _ in streams]
     for span in spans:
         clip = int(np.searchsorted(starts, span.first, "right")) - 1
         chunks[clip].append(_encode_span(library, clip, span))
     encoded = (
-        Encoded(header, tuple(sorted(own, key=lambda chunk: chunk.first)))
-        for (header, _), own in zip(heads, chunks, strict=True)
+        Encoded(coding.pack_header(plan, own), tuple(sorted(own, key=lambda chunk: chunk.first)))
+        for plan, own in zip(plans, chunks, strict=True)
     )
     return Together(tuple(encoded), library.origins)
 
