@@ -71,7 +71,7 @@ class Writer {
     const near::Block* const before = channel.blocks.empty() ? nullptr : &channel.blocks.back();
     const near::Around around = coder_.around(i, before, start, length);
     const bool is_split = random_.around(9) > 2;
-    if (length > near::kShortest && coder_.split(side_, around, length, is_split)) {
+    if (length > near::kShortest && coder_.split<near::Narrow>(side_, around, length, is_split)) {
       part(i, start, length / 2);
       part(i, start + length / 2, length / 2);
       return;
@@ -83,7 +83,7 @@ class Writer {
       const auto most = random_.around(20) == 0 ? 5000 : 60 / (k + 2);
       block.numbers[k] = static_cast<std::int32_t>(random_.around(most));
     }
-    coder_.code(side_, i, around, block);
+    coder_.code<near::Narrow>(side_, i, around, block);
     channel.blocks.push_back(block);
   }
 

@@ -8,6 +8,7 @@
 #include "near/coder.hpp"
 #include "near/marks.hpp"
 #include "near/start.hpp"
+#include "numbers/wide.hpp"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-slp-vectorize")  // see blocks.cpp
@@ -17,6 +18,26 @@ namespace mocapress::near {
 namespace {
 
 constexpr int kMostExponent = 4096;
+
+// Whether a part of a channel is cut into halves, and all of a block.
+template <class Vector>
+MOCAPRESS_IN_PLACE bool read_part(Coder& coder, RangeReading& side, std::size_t i,
+                                  const Around& around, Block& block) {
+  if (block.length > kShortest && coder.split<Vector>(side, around, block.length, false))
+    return true;
+  coder.code<Vector>(side, i, around, block);
+  return false;
+}
+
+MOCAPRESS_WIDE [[gnu::flatten]] bool wide_part(Coder& coder, RangeReading& side, std::size_t i,
+                                               const Around& around, Block& block) {
+  return read_part<Wide>(coder, side, i, around, block);
+}
+
+[[gnu::flatten]] bool narrow_part(Coder& coder, RangeReading& side, std::size_t i,
+                                  const Around& around, Block& block) {
+  return read_part<Narrow>(coder, side, i, around, block);
+}
 
 class Decoding {
  public:
@@ -94,13 +115,14 @@ class Decoding {
     Channel& channel = coder_.channels[i];
     const Block* const before = channel.blocks.empty() ? nullptr : &channel.blocks.back();
     const Around around = coder_.around(i, before, start, length);
-    if (length > kShortest && coder_.split(side_, around, length, false)) {
+    Block block{start, length};
+    const bool is_cut = is_wide() ? wide_part(coder_, side_, i, around, block)
+                                  : narrow_part(coder_, side_, i, around, block);
+    if (is_cut) {
       tree(i, start, length / 2, last);
       tree(i, start + length / 2, length / 2, last);
       return;
     }
-    Block block{start, length};
-    coder_.code(side_, i, around, block);
     double* const curve = curve_.data() + start;
     draw(block, last, plan_.steps[channel.index], plan_, curve);
     last = curve[length - 1];

@@ -88,14 +88,14 @@ class Coder : public Models {
     return found;
   }
 
-  template <class Side>
-  bool split(Side& side, const Around& around, int length, bool is_split) {
-    return splits.code(side, split_context(around, length), 0, is_split);
+  template <class Vector, class Side>
+  MOCAPRESS_IN_PLACE bool split(Side& side, const Around& around, int length, bool is_split) {
+    return Mixing<Vector>::code(side, splits.at(split_context(around, length)), 0, is_split);
   }
 
   // Codes a block of channel `i` and learns from it. Its numbers are those of the channel.
-  template <class Side>
-  void code(Side& side, std::size_t i, const Around& around, Block& block) {
+  template <class Vector, class Side>
+  MOCAPRESS_IN_PLACE void code(Side& side, std::size_t i, const Around& around, Block& block) {
     const int n = block.length;
     std::int32_t* const numbers = channels[i].numbers.data() + block.start;
     Block wanted = block;
@@ -104,11 +104,13 @@ class Coder : public Models {
     const auto told = [&](int k) { return given.empty() ? 0 : given[static_cast<std::size_t>(k)]; };
     block.numbers = numbers;
     std::fill(numbers, numbers + n, 0);
-    number(side, knots, knot_context(around, n), around, block, 0, told(0));
-    block.of_class = code_class(side, class_context(around, n, numbers[0]), n, wanted.of_class);
+    number<Vector>(side, knots.at(knot_context(around, n)), around, block, 0, told(0));
+    const Model::Place of_class = classes.at(class_context(around, n, numbers[0]));
+    block.of_class = code_class<Vector>(side, of_class, n, wanted.of_class);
     const int end = end_of(block.of_class, n);
     for (int k = 1; k <= end; ++k) {
-      number(side, sines, number_context(around, block, k), around, block, k, told(k));
+      const Model::Place place = sines.at(number_context(around, block, k));
+      number<Vector>(side, place, around, block, k, told(k));
     }
     remember(channels[i].usual, block);
   }
@@ -123,20 +125,21 @@ class Coder : public Models {
     return nullptr;
   }
 
-  template <class Side>
-  void number(Side& side, Model& model, const Context& context, const Around& around, Block& block,
-              int k, std::int32_t value) {
-    const std::int64_t magnitude = code_magnitude(model, side, context, std::abs(value));
+  template <class Vector, class Side>
+  MOCAPRESS_IN_PLACE void number(Side& side, const Model::Place& place, const Around& around,
+                                 Block& block, int k, std::int32_t value) {
+    const std::int64_t magnitude = code_magnitude<Vector>(side, place, std::abs(value));
     if (magnitude == 0) return;
-    const bool negative = signs.code(side, sign_context(around, block, k), 0, value < 0);
+    const Model::Place sign = signs.at(sign_context(around, block, k));
+    const bool negative = Mixing<Vector>::code(side, sign, 0, value < 0);
     block.numbers[k] = static_cast<std::int32_t>(negative ? -magnitude : magnitude);
   }
 
-  template <class Side>
-  int code_class(Side& side, const Context& context, int length, int value) {
+  template <class Vector, class Side>
+  MOCAPRESS_IN_PLACE int code_class(Side& side, const Model::Place& place, int length, int value) {
     const int most = classes_of(length) - 1;
     for (int u = 0; u < most; ++u) {
-      if (!classes.code(side, context, static_cast<std::size_t>(u), value > u)) return u;
+      if (!Mixing<Vector>::code(side, place, static_cast<std::size_t>(u), value > u)) return u;
     }
     return most;
   }

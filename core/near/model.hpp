@@ -5,7 +5,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
+
+#include "numbers/lanes.hpp"
 
 namespace mocapress::near {
 
@@ -52,55 +55,62 @@ struct Context {
   std::int32_t first_set = 0, second_set = 0;
 };
 
+// Whole numbers side by side, in registers that all machines have, and in wider ones. All that is
+// done to them is done one by one, so that both give the same.
+using Narrow = std::int32_t __attribute__((vector_size(16)));
+using Wide = std::int32_t __attribute__((vector_size(32)));
+
+template <class Vector>
+MOCAPRESS_IN_PLACE Vector within(Vector numbers, std::int32_t least, std::int32_t most) {
+  const Vector low = Vector{} + least, high = Vector{} + most;
+  numbers = numbers < low ? low : numbers;
+  return numbers > high ? high : numbers;
+}
+
 // The chance that a bit is 1, averaged over all that was seen and over the latest.
 struct Counter {
-  std::uint16_t slow = 1 << 15, fast = 1 << 15;
-  std::uint16_t count = 0;
+  std::uint32_t chances = 0x80008000;  // the slow one, and above it the fast one
+  std::uint32_t count = 0;
 
-  void learn(bool one, int most) {
-    static const auto kRates = [] {
-      std::array<std::int32_t, 256> made{};
-      for (int n = 0; n < 256; ++n) made[n] = 655360 / (10 * n + 16);
-      return made;
-    }();
-    const int target = one ? 65535 : 0;
-    slow = moved(slow, target, kRates[count], 16);
-    fast = moved(fast, target, kRates[std::min<int>(count, 18)], 64);
-    if (count < most) ++count;
-  }
-
- private:
-  static std::uint16_t moved(std::uint16_t chance, int target, std::int64_t rate, int margin) {
-    const auto next = chance + static_cast<int>((target - chance) * rate >> 16);
-    return static_cast<std::uint16_t>(std::clamp(next, margin, 65535 - margin));
-  }
+  std::uint16_t slow() const { return static_cast<std::uint16_t>(chances); }
+  std::uint16_t fast() const { return static_cast<std::uint16_t>(chances >> 16); }
 };
 
+// How much the chances of a counter move that has seen so much, the fast one's above.
+class Rates {
+ public:
+  Rates() {
+    const auto rate = [](std::uint32_t count) { return 655360 / (10 * count + 16); };
+    for (std::uint32_t n = 0; n < 256; ++n) rates_[n] = rate(n) | rate(std::min(n, 18U)) << 16;
+  }
+  std::int32_t of(std::uint32_t count) const { return static_cast<std::int32_t>(rates_[count]); }
+
+ private:
+  std::array<std::uint32_t, 256> rates_;
+};
+
+inline const Rates& rates() {
+  static const Rates kRates;
+  return kRates;
+}
+
+// The weights of eight slow chances, then of the fast ones.
 struct Mixer {
   std::array<std::int32_t, kInputs> weights;
   std::int32_t uses = 0;
 
   Mixer() { weights.fill(6000); }
-
-  int mixed(const std::array<std::int32_t, kInputs>& inputs) const {
-    std::int32_t sum = 0;
-    for (std::size_t i = 0; i < kInputs; ++i) sum += weights[i] * inputs[i];
-    return sum >> 16;
-  }
-
-  void learn(const std::array<std::int32_t, kInputs>& inputs, int error) {
-    const int shift = uses < 32 ? 13 : uses < 128 ? 14 : uses < 512 ? 15 : 16;
-    if (uses < 512) ++uses;
-    for (std::size_t i = 0; i < kInputs; ++i) {
-      const std::int32_t weight = weights[i] + ((inputs[i] * error + (1 << (shift - 1))) >> shift);
-      weights[i] = std::clamp(weight, -131071, 131071);
-    }
-  }
 };
 
 // Symbols made of the same few decisions in many contexts.
 class Model {
  public:
+  // What a context has of each decision.
+  struct Place {
+    std::array<Counter*, kContexts> counters;
+    Mixer *first, *second;
+  };
+
   Model(std::size_t decisions, const std::array<std::size_t, kContexts>& sizes,
         std::size_t first_sets, std::size_t second_sets)
       : decisions_(decisions), first_(first_sets * decisions), second_(second_sets * decisions) {
@@ -124,47 +134,131 @@ class Model {
     }
   }
 
+  Place at(const Context& context) {
+    Place place;
+    for (std::size_t i = 0; i < kContexts; ++i) {
+      place.counters[i] = &tables_[i][static_cast<std::size_t>(context.at[i]) * decisions_];
+    }
+    place.first = &first_[static_cast<std::size_t>(context.first_set) * decisions_];
+    place.second = &second_[static_cast<std::size_t>(context.second_set) * decisions_];
+    return place;
+  }
+
+ private:
+  std::size_t decisions_;
+  std::array<std::vector<Counter>, kContexts> tables_;
+  std::vector<Mixer> first_, second_;
+};
+
+// Decisions by vectors of numbers.
+template <class Vector>
+class Mixing {
+ public:
   // The chance of a 1, in 1/65536.
-  int chance(const Context& context, std::size_t decision) const {
-    std::array<std::int32_t, kInputs> inputs;
-    return mixed(context, decision, inputs);
+  MOCAPRESS_IN_PLACE static int chance(const Model::Place& place, std::size_t decision) {
+    return mixed(place, decision, inputs_of(place, decision));
   }
 
   template <class Side>
-  bool code(Side& side, const Context& context, std::size_t decision, bool one) {
-    std::array<std::int32_t, kInputs> inputs;
-    const int chance = mixed(context, decision, inputs);
+  MOCAPRESS_IN_PLACE static bool code(Side& side, const Model::Place& place, std::size_t decision,
+                                      bool one) {
+    const Inputs inputs = inputs_of(place, decision);
+    const int chance = mixed(place, decision, inputs);
     one = side.chance(static_cast<std::uint32_t>(65536 - chance), one);
     const int error = (one ? 65536 : 0) - chance;
-    first_[index(context.first_set, decision)].learn(inputs, error);
-    second_[index(context.second_set, decision)].learn(inputs, error);
-    for (std::size_t i = 0; i < kContexts; ++i) {
-      tables_[i][index(context.at[i], decision)].learn(one, 255);
+    Inputs moves;
+    for (std::size_t i = 0; i < kVectors; ++i) moves[i] = inputs[i] * error;
+    learn(place.first[decision], moves);
+    learn(place.second[decision], moves);
+    const std::int32_t target = one ? 65535 : 0;
+    for (std::size_t i = 0; i < kContexts; i += kWidth) {
+      learn(place.counters.data() + i, decision, target);
     }
     return one;
   }
 
  private:
-  std::size_t index(std::int32_t place, std::size_t decision) const {
-    return static_cast<std::size_t>(place) * decisions_ + decision;
-  }
+  static constexpr std::size_t kWidth = sizeof(Vector) / sizeof(std::int32_t);
+  static constexpr std::size_t kVectors = kInputs / kWidth;
+  using Inputs = std::array<Vector, kVectors>;
 
-  int mixed(const Context& context, std::size_t decision,
-            std::array<std::int32_t, kInputs>& inputs) const {
-    const Logistic& tables = logistic();
-    for (std::size_t i = 0; i < kContexts; ++i) {
-      const Counter& counter = tables_[i][index(context.at[i], decision)];
-      inputs[2 * i] = tables.logit(counter.slow);
-      inputs[2 * i + 1] = tables.logit(counter.fast);
+  // As many numbers as a vector has.
+  template <class Number>
+  MOCAPRESS_IN_PLACE static Vector vector(Number&& number) {
+    if constexpr (kWidth == 4) {
+      return Vector{number(0), number(1), number(2), number(3)};
+    } else {
+      return Vector{number(0), number(1), number(2), number(3),
+                    number(4), number(5), number(6), number(7)};
     }
-    const int first = first_[index(context.first_set, decision)].mixed(inputs);
-    const int second = second_[index(context.second_set, decision)].mixed(inputs);
-    return tables.chance((first + second) >> 1);
   }
 
-  std::size_t decisions_;
-  std::array<std::vector<Counter>, kContexts> tables_;
-  std::vector<Mixer> first_, second_;
+  MOCAPRESS_IN_PLACE static Inputs inputs_of(const Model::Place& place, std::size_t decision) {
+    const Logistic& tables = logistic();
+    Inputs inputs;
+    for (std::size_t v = 0; v < kVectors / 2; ++v) {
+      const auto own = [&](std::size_t i) -> const Counter& {
+        return place.counters[v * kWidth + i][decision];
+      };
+      inputs[v] = vector([&](std::size_t i) { return tables.logit(own(i).slow()); });
+      inputs[kVectors / 2 + v] = vector([&](std::size_t i) { return tables.logit(own(i).fast()); });
+    }
+    return inputs;
+  }
+
+  MOCAPRESS_IN_PLACE static Vector load(const std::int32_t* from) {
+    Vector numbers;
+    std::memcpy(&numbers, from, sizeof numbers);
+    return numbers;
+  }
+
+  MOCAPRESS_IN_PLACE static int mixed(const Mixer& mixer, const Inputs& inputs) {
+    Vector sums{};
+    for (std::size_t i = 0; i < kVectors; ++i) {
+      sums += load(mixer.weights.data() + i * kWidth) * inputs[i];
+    }
+    std::int32_t sum = 0;
+    for (std::size_t i = 0; i < kWidth; ++i) sum += sums[i];
+    return sum >> 16;
+  }
+
+  MOCAPRESS_IN_PLACE static int mixed(const Model::Place& place, std::size_t decision,
+                                      const Inputs& inputs) {
+    const int first = mixed(place.first[decision], inputs);
+    const int second = mixed(place.second[decision], inputs);
+    return logistic().chance((first + second) >> 1);
+  }
+
+  MOCAPRESS_IN_PLACE static void learn(Mixer& mixer, const Inputs& moves) {
+    const int uses = mixer.uses;
+    const int shift = 13 + (uses >= 32 ? 1 : 0) + (uses >= 128 ? 1 : 0) + (uses >= 512 ? 1 : 0);
+    mixer.uses = uses + (uses < 512 ? 1 : 0);
+    for (std::size_t i = 0; i < kVectors; ++i) {
+      std::int32_t* const own = mixer.weights.data() + i * kWidth;
+      const Vector moved = load(own) + ((moves[i] + (1 << (shift - 1))) >> shift);
+      const Vector weights = within(moved, -131071, 131071);
+      std::memcpy(own, &weights, sizeof weights);
+    }
+  }
+
+  // Moves the chances of as many counters as a vector has numbers. One that has seen nothing has
+  // chances of a half, so that all products are below 2^31.
+  MOCAPRESS_IN_PLACE static void learn(Counter* const* counters, std::size_t decision,
+                                       std::int32_t target) {
+    const Rates& tables = rates();
+    const auto own = [&](std::size_t i) -> Counter& { return counters[i][decision]; };
+    const Vector both =
+        vector([&](std::size_t i) { return static_cast<std::int32_t>(own(i).chances); });
+    const Vector moves = vector([&](std::size_t i) { return tables.of(own(i).count); });
+    const Vector slow = both & 0xffff, fast = (both >> 16) & 0xffff;
+    const Vector slower = slow + ((target - slow) * (moves & 0xffff) >> 16);
+    const Vector faster = fast + ((target - fast) * ((moves >> 16) & 0xffff) >> 16);
+    const Vector moved = within(slower, 16, 65519) | within(faster, 64, 65471) << 16;
+    for (std::size_t i = 0; i < kWidth; ++i) {
+      own(i).chances = static_cast<std::uint32_t>(moved[i]);
+      own(i).count += own(i).count < 255 ? 1 : 0;
+    }
+  }
 };
 
 // Magnitudes: is it more than 0, than 1, ... than 13; then the length of what is above, and that.
@@ -172,18 +266,17 @@ inline constexpr int kUnary = 14;
 inline constexpr int kMostLength = 29;
 inline constexpr std::size_t kMagnitudeDecisions = kUnary + 18;
 
-template <class Side>
-std::int64_t code_magnitude(Model& model, Side& side, const Context& context, std::int64_t value) {
+template <class Vector, class Side>
+MOCAPRESS_IN_PLACE std::int64_t code_magnitude(Side& side, const Model::Place& place,
+                                               std::int64_t value) {
   for (int u = 0; u < kUnary; ++u) {
-    if (!model.code(side, context, static_cast<std::size_t>(u), value > u)) return u;
+    if (!Mixing<Vector>::code(side, place, static_cast<std::size_t>(u), value > u)) return u;
   }
   const std::int64_t above = value - kUnary + 1;
   int length = 0;
-  while (length < kMostLength &&
-         model.code(side, context,
-                    std::size_t{kUnary} + static_cast<std::size_t>(std::min(length, 17)),
-                    above >> (length + 1) > 0)) {
-    ++length;
+  for (; length < kMostLength; ++length) {
+    const auto decision = static_cast<std::size_t>(kUnary + std::min(length, 17));
+    if (!Mixing<Vector>::code(side, place, decision, above >> (length + 1) > 0)) break;
   }
   const std::int64_t top = std::int64_t{1} << length;
   const auto below = side.raw(length, static_cast<std::uint64_t>(above & (top - 1)));

@@ -1,9 +1,8 @@
 #include "near/prediction.hpp"
 
 #include <algorithm>
-#include <cmath>
-
-#include "numbers/arithmetic.hpp"
+#include <array>
+#include <cstring>
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-slp-vectorize")  // see blocks.cpp
@@ -15,59 +14,6 @@ namespace {
 constexpr std::size_t kMostSources = 20;
 constexpr double kAssumed = 50;  // observations that count as seen where a start is known
 constexpr double kFade = 0.95;   // of what was seen, in a span
-
-// sqrt(2 / 64) cos(pi k (t + 1/2) / 64) at [64 (k - 1) + t].
-const std::vector<double>& cosines() {
-  static const auto kCosines = [] {
-    std::vector<double> turns(256), table(std::size_t{63} * 64);
-    const double height = std::sqrt(2.0 / 64);
-    for (std::size_t i = 0; i < 256; ++i) {
-      turns[i] = height * sine_cosine(3.141592653589793 * static_cast<double>(i) / 128).cosine;
-    }
-    for (std::size_t k = 1; k < 64; ++k) {
-      for (std::size_t t = 0; t < 64; ++t) table[64 * (k - 1) + t] = turns[k * (2 * t + 1) % 256];
-    }
-    return table;
-  }();
-  return kCosines;
-}
-
-// The waves 1 to 63 of 64 numbers.
-void waves_of(const double* numbers, double* waves) {
-  const double* table = cosines().data();
-  for (std::size_t k = 0; k < 63; ++k, table += 64) {
-    double sum = 0;
-    for (std::size_t t = 0; t < 64; ++t) sum += table[t] * numbers[t];
-    waves[k] = sum;
-  }
-}
-
-// Solves the equations of a symmetric matrix of which the lower half is told; false where it is
-// not positive.
-bool solve(std::vector<double>& matrix, std::vector<double>& x) {
-  const std::size_t m = x.size();
-  for (std::size_t i = 0; i < m; ++i) {
-    double* const row = &matrix[i * m];
-    for (std::size_t j = 0; j <= i; ++j) {
-      double sum = row[j];
-      for (std::size_t k = 0; k < j; ++k) sum -= row[k] * matrix[j * m + k];
-      if (j < i) {
-        row[j] = sum / matrix[j * m + j];
-      } else if (sum > 0) {
-        row[i] = std::sqrt(sum);
-      } else {
-        return false;
-      }
-    }
-    for (std::size_t k = 0; k < i; ++k) x[i] -= row[k] * x[k];
-    x[i] /= row[i];
-  }
-  for (std::size_t i = m; i-- > 0;) {
-    for (std::size_t k = i + 1; k < m; ++k) x[i] -= matrix[k * m + i] * x[k];
-    x[i] /= matrix[i * m + i];
-  }
-  return true;
-}
 
 }  // namespace
 
@@ -106,8 +52,8 @@ Prediction::Prediction(std::vector<std::vector<std::size_t>> sources,
     own.last = firsts[i];
     std::fill_n(own.past, kReach + 1, firsts[i]);
     const std::size_t features = 2 * own.sources.size();
-    own.products.assign(features * features, 0.0);
-    own.targets.assign(features, 0.0);
+    own.products.assign(filled(features) * filled(features), 0.0);
+    own.targets.assign(filled(features), 0.0);
   }
 }
 
@@ -118,7 +64,7 @@ void Prediction::assume(const std::vector<Assumed>& all, const std::vector<std::
   };
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Own& own = channels_[i];
-    const std::size_t m = 2 * own.sources.size();
+    const std::size_t m = 2 * own.sources.size(), next = filled(m);
     for (std::size_t a = 0; a < m; a += 2) {
       const std::size_t source = own.sources[a / 2];
       const std::array place{columns[i], columns[source]};
@@ -127,9 +73,9 @@ void Prediction::assume(const std::vector<Assumed>& all, const std::vector<std::
       const double ratio = channels_[source].step / own.step;
       const double square = kAssumed * (ratio * ratio), once = kAssumed * ratio;
       const auto& [one, other] = found->shares;
-      own.products[a * m + a] = square * found->moved;
-      own.products[(a + 1) * m + a] = square * found->both;
-      own.products[(a + 1) * m + a + 1] = square * found->averaged;
+      own.products[a * next + a] = square * found->moved;
+      own.products[a * next + a + 1] = square * found->both;
+      own.products[(a + 1) * next + a + 1] = square * found->averaged;
       own.targets[a] = once * (found->moved * one + found->both * other);
       own.targets[a + 1] = once * (found->both * one + found->averaged * other);
     }
@@ -141,63 +87,55 @@ void Prediction::assume(const std::vector<Assumed>& all, const std::vector<std::
 void Prediction::begin_span(int length) { length_ = static_cast<std::size_t>(length); }
 
 void Prediction::predict(std::size_t i, double* curve) {
-  Own& own = channels_[i];
-  std::fill_n(curve, length_, 0.0);
-  const std::size_t m = 2 * own.sources.size();
-  if (m == 0 || seen_ == 0) return;
-  std::vector<double> matrix = own.products, shares = own.targets;
-  for (std::size_t a = 0; a < m; ++a) {
-    const double step = channels_[own.sources[a / 2]].step;
-    double& entry = matrix[a * m + a];
-    entry = entry + entry * (caution_ / seen_);
-    entry = entry + step * step / (own.step * own.step);
+  const Own& own = channels_[i];
+  const std::size_t m = 2 * own.sources.size(), next = filled(m);
+  bool solved = m > 0 && seen_ > 0;
+  if (solved) {
+    scratch_ = own.products;
+    shares_ = own.targets;
+    for (std::size_t a = 0; a < m; ++a) {
+      const double step = channels_[own.sources[a / 2]].step;
+      double& entry = scratch_[a * next + a];
+      entry = entry + entry * (caution_ / seen_);
+      entry = entry + step * step / (own.step * own.step);
+    }
+    solved = solve(scratch_.data(), shares_.data(), m);
   }
-  if (!solve(matrix, shares)) return;
-  for (std::size_t a = 0; a < m; ++a) {
-    const Own& source = channels_[own.sources[a / 2]];
-    const double* const feature = a % 2 == 0 ? source.moved.data() : source.averaged.data();
-    const double share = shares[a];
-    for (std::size_t t = 0; t < length_; ++t) curve[t] += share * feature[t];
+  curves_.clear();
+  for (std::size_t k = 0; solved && k < own.sources.size(); ++k) {
+    const Own& source = channels_[own.sources[k]];
+    curves_.push_back(source.moved.data());
+    curves_.push_back(source.averaged.data());
   }
+  weigh(curves_.data(), shares_.data(), curves_.size(), length_, curve);
 }
 
 void Prediction::tell(std::size_t i, const double* values, const double* rest) {
   Own& own = channels_[i];
   own.values.assign(values, values + length_);
   own.rest.assign(rest, rest + length_);
+  own.rests = std::all_of(rest, rest + length_, [](double one) { return one == 0; });
   own.moved.resize(length_);
   for (std::size_t t = 0; t < length_; ++t) own.moved[t] = values[t] - own.last;
-  average(own);
-}
-
-// Averages with weights that fall to both sides; behind the span stands its last value.
-void Prediction::average(Own& own) const {
-  std::vector<double> whole(own.past, own.past + kReach + 1);
-  whole.insert(whole.end(), own.values.begin(), own.values.end());
-  whole.insert(whole.end(), kReach, own.values.back());
-  own.averaged.assign(length_, 0.0);
+  // Averages have weights that fall to both sides; behind the span stands its last value.
+  scratch_.assign(own.past + 1, own.past + kReach + 1);
+  scratch_.insert(scratch_.end(), values, values + length_);
+  scratch_.insert(scratch_.end(), kReach, values[length_ - 1]);
   double before = 0;
   for (std::size_t k = 0; k <= 2 * kReach; ++k) {
     const auto weight = static_cast<double>(k <= kReach ? k + 1 : 2 * kReach + 1 - k);
-    const double* const from = whole.data() + k + 1;
-    for (std::size_t t = 0; t < length_; ++t) own.averaged[t] += weight * from[t];
-    before += weight * (k <= kReach ? own.past[k] : own.values[k - kReach - 1]);
+    before += weight * (k <= kReach ? own.past[k] : values[k - kReach - 1]);
   }
+  own.averaged.resize(length_);
+  average(scratch_.data(), length_, own.averaged.data());
   for (double& value : own.averaged)
     value = (value - before) / static_cast<double>((kReach + 1) * (kReach + 1));
 }
 
 void Prediction::end_span(std::size_t frames) {
-  std::vector<double> waves(channels_.size() * 3 * kWaves);
   for (std::size_t group = 0; (group + 1) * kGroup <= frames; ++group) {
-    const std::size_t start = group * kGroup;
-    for (std::size_t i = 0; i < channels_.size(); ++i) {
-      double* const own = &waves[i * 3 * kWaves];
-      waves_of(&channels_[i].moved[start], own);
-      waves_of(&channels_[i].averaged[start], own + kWaves);
-      waves_of(&channels_[i].rest[start], own + 2 * kWaves);
-    }
-    for (std::size_t i = 0; i < channels_.size(); ++i) learn(i, waves);
+    find_waves(group * kGroup);
+    for (std::size_t i = 0; i < channels_.size(); ++i) learn(i);
     seen_ += static_cast<double>(kWaves);
   }
   seen_ = seen_ * kFade;
@@ -209,29 +147,65 @@ void Prediction::end_span(std::size_t frames) {
   }
 }
 
-// Adds to the normal equations of a channel what a group of frames shows.
-void Prediction::learn(std::size_t i, const std::vector<double>& waves) {
-  Own& own = channels_[i];
-  const std::size_t m = 2 * own.sources.size();
-  const double* const target = &waves[i * 3 * kWaves];
-  const double* const rest = target + 2 * kWaves;
-  std::vector<double> sources(m);
-  for (std::size_t k = 0; k < kWaves; ++k) {
-    double energy = 0;
-    for (std::size_t j = k - std::min<std::size_t>(k, 2); j < std::min(kWaves, k + 3); ++j) {
-      energy += rest[j] * rest[j];
+// The waves of a group of frames, from `start` on.
+void Prediction::find_waves(std::size_t start) {
+  const std::size_t moving = filled(2 * channels_.size());
+  moves_.assign(kGroup * moving, 0.0);
+  rest_of_.clear();
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const Own& own = channels_[i];
+    for (std::size_t t = 0; t < kGroup; ++t) {
+      moves_[t * moving + 2 * i] = own.moved[start + t];
+      moves_[t * moving + 2 * i + 1] = own.averaged[start + t];
     }
-    const double weight = 1 / (own.step * own.step + energy / 5);
-    for (std::size_t a = 0; a < m; ++a) {
-      sources[a] = waves[(own.sources[a / 2] * 3 + a % 2) * kWaves + k];
-    }
-    for (std::size_t a = 0; a < m; ++a) {
-      const double weighed = weight * sources[a];
-      own.targets[a] += weighed * target[k];
-      double* const row = &own.products[a * m];
-      for (std::size_t b = 0; b <= a; ++b) row[b] += weighed * sources[b];
+    rest_of_.push_back(count);
+    if (!own.rests) ++count;
+  }
+  const std::size_t resting = filled(count);
+  rests_.assign(kGroup * resting, 0.0);
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    if (channels_[i].rests) continue;
+    for (std::size_t t = 0; t < kGroup; ++t) {
+      rests_[t * resting + rest_of_[i]] = channels_[i].rest[start + t];
     }
   }
+  move_waves_.resize(kWaves * moving);
+  rest_waves_.resize(kWaves * resting);
+  waves_of(moves_.data(), moving, move_waves_.data());
+  waves_of(rests_.data(), resting, rest_waves_.data());
+}
+
+// Adds to the normal equations of a channel what the waves of a group of frames show.
+void Prediction::learn(std::size_t i) {
+  Own& own = channels_[i];
+  const std::size_t m = 2 * own.sources.size(), next = filled(m);
+  if (m == 0) return;
+  const std::size_t moving = move_waves_.size() / kWaves, resting = rest_waves_.size() / kWaves;
+  std::array<double, kWaves + 4> squares{};
+  for (std::size_t k = 0; k < kWaves && !own.rests; ++k) {
+    const double wave = rest_waves_[k * resting + rest_of_[i]];
+    squares[k + 2] = wave * wave;
+  }
+  features_.resize(kWaves * next);
+  weighed_.resize(kWaves * next);
+  std::array<double, kWaves> aims;
+  for (std::size_t k = 0; k < kWaves; ++k) {
+    double energy = 0;
+    for (std::size_t j = k; j < k + 5; ++j) energy += squares[j];
+    const double weight = 1 / (own.step * own.step + energy / 5);
+    const double* const waves = &move_waves_[k * moving];
+    double* const feature = &features_[k * next];
+    double* const weighed = &weighed_[k * next];
+    for (std::size_t a = 0; a < m; a += 2) {
+      std::memcpy(feature + a, waves + 2 * own.sources[a / 2], 2 * sizeof(double));
+    }
+    for (std::size_t a = m; a < next; ++a) feature[a] = 0;
+    for (std::size_t a = 0; a < next; ++a) weighed[a] = weight * feature[a];
+    aims[k] = waves[2 * i];
+  }
+  add_products(features_.data(), weighed_.data(), aims.data(), next, own.products.data(),
+               own.targets.data());
 }
 
 }  // namespace mocapress::near

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "near/blocks.hpp"
+#include "near/sums.hpp"
 
 namespace mocapress::near {
 
@@ -45,26 +46,32 @@ class Prediction {
   void end_span(std::size_t frames);
 
  private:
-  static constexpr std::size_t kReach = 6;  // frames to both sides of an average
-  static constexpr std::size_t kGroup = 64;
-  static constexpr std::size_t kWaves = kGroup - 1;
-
   struct Own {
     std::vector<std::size_t> sources;
     double step = 1, last = 0;
     double past[kReach + 1] = {};  // its values before the span, the latest last
     // Its values in the span; these and averages, less those of the frame before the span.
     std::vector<double> values, rest, moved, averaged;
-    std::vector<double> products, targets;  // of the normal equations
+    bool rests = true;  // whether its rest is 0 throughout the span
+    // Of the normal equations: the upper half, in rows of filled(features), and the right side.
+    std::vector<double> products, targets;
   };
 
-  void average(Own& own) const;
-  void learn(std::size_t i, const std::vector<double>& waves);
+  void find_waves(std::size_t start);
+  void learn(std::size_t i);
 
   std::vector<Own> channels_;
   double caution_ = 0;
   std::size_t length_ = 0;
   double seen_ = 0;  // observations, which fade
+  // Of a group of frames, in rows: what all channels moved and what their averages did, side by
+  // side, and the rest of those that do not rest; and the waves of these.
+  std::vector<double> moves_, rests_, move_waves_, rest_waves_;
+  std::vector<std::size_t> rest_of_;  // of each channel: its column in rests_
+  // Of a channel: its features, a row for each wave, and these weighed.
+  std::vector<double> features_, weighed_;
+  std::vector<double> scratch_, shares_;
+  std::vector<const double*> curves_;
 };
 
 }  // namespace mocapress::near

@@ -32,14 +32,14 @@ class Notes {
   bool counter(Side& side, Counter& counter, bool last) {
     const bool known = side.bit(known_[last ? 1 : 0], counter.count > 1);
     if (!known) return false;
-    const int logit = logistic().logit(counter.slow);
+    const int logit = logistic().logit(counter.slow());
     const auto place = chances_.code(side, static_cast<unsigned>(logit + 1024) >> 5);
     const auto met = static_cast<unsigned>(std::bit_width(unsigned{counter.count})) - 1;
     const auto times = counts_.code(side, std::min(met, 5U));
     if constexpr (Side::kReading) {
       const int chance = logistic().chance(static_cast<int>(place << 5) - 1008);
-      counter.slow = counter.fast = static_cast<std::uint16_t>(std::clamp(chance, 64, 65471));
-      counter.count = static_cast<std::uint16_t>(1U << times);
+      const auto both = static_cast<std::uint32_t>(std::clamp(chance, 64, 65471));
+      counter = {both << 16 | both, 1U << times};
     }
     return true;
   }
@@ -49,7 +49,9 @@ class Notes {
     const auto uses = uses_.code(side, static_cast<unsigned>(std::bit_width(unsigned(mixer.uses))));
     if (uses == 0) return;
     if constexpr (Side::kReading) mixer.uses = 1 << (uses - 1);
-    for (std::int32_t& weight : mixer.weights) {
+    // They are told by contexts, slow and fast in turn.
+    for (std::size_t i = 0; i < kInputs; ++i) {
+      std::int32_t& weight = mixer.weights[i % 2 * kContexts + i / 2];
       const auto part =
           weights_.code(side, static_cast<unsigned>(std::min((weight + 131584) >> 10, 255)));
       if constexpr (Side::kReading) weight = (static_cast<std::int32_t>(part) - 128) * 1024;

@@ -220,13 +220,13 @@ class Encoding {
     const Block* const before = channel.blocks.empty() ? nullptr : &channel.blocks.back();
     const Around around = coder_.around(i, before, start, length);
     const bool is_split = cut.pieces[next].block.length < length;
-    if (length > kShortest && coder_.split(side_, around, length, is_split)) {
+    if (length > kShortest && coder_.split<Narrow>(side_, around, length, is_split)) {
       write(i, cut, next, start, length / 2);
       write(i, cut, next, start + length / 2, length / 2);
       return;
     }
     Block block = cut.pieces[next++].block;
-    coder_.code(side_, i, around, block);
+    coder_.code<Narrow>(side_, i, around, block);
     channel.blocks.push_back(block);
   }
 

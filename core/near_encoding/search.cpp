@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "numbers/wide.hpp"
+
 namespace mocapress::near {
 namespace {
 
@@ -27,15 +29,16 @@ double bits_of(int chance_of_one, bool one) {
 }
 
 // What magnitudes cost, asked for in rising order or again.
+template <class Vector>
 class MagnitudeCosts {
  public:
-  MagnitudeCosts(const Model& model, const Context& context) : model_(model), context_(context) {}
+  explicit MagnitudeCosts(const Model::Place& place) : place_(place) {}
 
   double of(std::int64_t magnitude) {
     const auto known = static_cast<std::size_t>(std::min<std::int64_t>(magnitude, kUnary));
     while (count_ <= known) {
       if (count_ < kUnary) {
-        const int chance = model_.chance(context_, count_);
+        const int chance = Mixing<Vector>::chance(place_, count_);
         stops_[count_] = beyond_ + bits_of(chance, false);
         beyond_ += bits_of(chance, true);
       } else {
@@ -50,14 +53,13 @@ class MagnitudeCosts {
     double bits = stops_[known] + sign + length;
     for (int i = 0; i <= length; ++i) {
       const auto decision = static_cast<std::size_t>(kUnary + std::min(i, 17));
-      bits += bits_of(model_.chance(context_, decision), i < length);
+      bits += bits_of(Mixing<Vector>::chance(place_, decision), i < length);
     }
     return bits;
   }
 
  private:
-  const Model& model_;
-  const Context& context_;
+  const Model::Place& place_;
   std::size_t count_ = 0;
   double beyond_ = 0;
   std::array<double, kUnary + 1> stops_{};
@@ -87,8 +89,9 @@ std::int32_t cheapest(std::int32_t number, double& cost, Cost&& cost_of) {
 }
 
 // One block, its numbers and its curve.
-Cut block_of(const Coder& coder, const Plan& plan, const Target& target, const Around& around,
-             int start, int length, double last) {
+template <class Vector>
+MOCAPRESS_IN_PLACE Cut block_with(Coder& coder, const Plan& plan, const Target& target,
+                                  const Around& around, int start, int length, double last) {
   const int n = length;
   const double* const wanted = target.values + start;
   const double* const costs = target.costs + start;
@@ -103,8 +106,8 @@ Cut block_of(const Coder& coder, const Plan& plan, const Target& target, const A
   for (int t = n - tail; t < n; ++t) end_cost += costs[t] / tail;
 
   const double knot_step = target.step * plan.knot;
-  const Context knot_place = knot_context(around, n);
-  MagnitudeCosts knot_costs(coder.knots, knot_place);
+  const Model::Place knot_place = coder.knots.at(knot_context(around, n));
+  MagnitudeCosts<Vector> knot_costs(knot_place);
   double found = 0;
   const auto knot = cheapest(rounded((wanted[n - 1] - last) / knot_step), found, [&](auto q) {
     const double off = last + q * knot_step - wanted[n - 1];
@@ -129,13 +132,14 @@ Cut block_of(const Coder& coder, const Plan& plan, const Target& target, const A
     if (std::fabs(height) > 0.5 * target.step) top = k;
   }
 
-  const Context class_place = class_context(around, n, knot);
+  const Model::Place class_place = coder.classes.at(class_context(around, n, knot));
   const int most = classes_of(n) - 1;
   double class_bits = 0;
   const auto class_cost = [&](int of_class) {
     double bits = class_bits;
     if (of_class < most) {
-      bits += bits_of(coder.classes.chance(class_place, static_cast<std::size_t>(of_class)), false);
+      bits +=
+          bits_of(Mixing<Vector>::chance(class_place, static_cast<std::size_t>(of_class)), false);
     }
     return target.bit_cost * bits;
   };
@@ -143,12 +147,12 @@ Cut block_of(const Coder& coder, const Plan& plan, const Target& target, const A
   int best_class = 0, k = 1;
   for (int of_class = 1; of_class <= most; ++of_class) {
     const auto decision = static_cast<std::size_t>(of_class - 1);
-    class_bits += bits_of(coder.classes.chance(class_place, decision), true);
+    class_bits += bits_of(Mixing<Vector>::chance(class_place, decision), true);
     block.of_class = std::min(of_class + 2, most);
     for (; k <= end_of(of_class, n); ++k) {
       const double height = heights[static_cast<std::size_t>(k)] / target.step;
-      const Context place = number_context(around, block, k);
-      MagnitudeCosts number_costs(coder.sines, place);
+      const Model::Place place = coder.sines.at(number_context(around, block, k));
+      MagnitudeCosts<Vector> number_costs(place);
       double one = 0;
       block.numbers[k] = cheapest(rounded(height), one, [&](auto q) {
         const double drawn = std::abs(q) == 1 ? q * plan.first : q;
@@ -173,14 +177,26 @@ Cut block_of(const Coder& coder, const Plan& plan, const Target& target, const A
   return cut;
 }
 
+MOCAPRESS_WIDE [[gnu::flatten]] Cut wide_block(Coder& coder, const Plan& plan, const Target& target,
+                                               const Around& around, int start, int length,
+                                               double last) {
+  return block_with<Wide>(coder, plan, target, around, start, length, last);
+}
+
+[[gnu::flatten]] Cut narrow_block(Coder& coder, const Plan& plan, const Target& target,
+                                  const Around& around, int start, int length, double last) {
+  return block_with<Narrow>(coder, plan, target, around, start, length, last);
+}
+
 }  // namespace
 
-Cut search(const Coder& coder, std::size_t i, const Plan& plan, const Target& target,
-           const Block* before, int start, int length, double last) {
+Cut search(Coder& coder, std::size_t i, const Plan& plan, const Target& target, const Block* before,
+           int start, int length, double last) {
   const Around around = coder.around(i, before, start, length);
-  Cut whole = block_of(coder, plan, target, around, start, length, last);
+  Cut whole = is_wide() ? wide_block(coder, plan, target, around, start, length, last)
+                        : narrow_block(coder, plan, target, around, start, length, last);
   if (length <= kShortest) return whole;
-  const int chance = coder.splits.chance(split_context(around, length), 0);
+  const int chance = Mixing<Narrow>::chance(coder.splits.at(split_context(around, length)), 0);
   whole.cost += target.bit_cost * bits_of(chance, false);
   const int half = length / 2;
   Cut first = search(coder, i, plan, target, before, start, half, last);

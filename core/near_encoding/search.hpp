@@ -29,7 +29,7 @@ struct Cut {
 };
 
 // The cheapest cut found of frames `start` on, where the channel comes from `last`.
-Cut search(const Coder& coder, std::size_t i, const Plan& plan, const Target& target,
-           const Block* before, int start, int length, double last);
+Cut search(Coder& coder, std::size_t i, const Plan& plan, const Target& target, const Block* before,
+           int start, int length, double last);
 
 }  // namespace mocapress::near
