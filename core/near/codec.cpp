@@ -150,7 +150,8 @@ Prediction prediction_of(const Coder& coder, const Plan& plan) {
     firsts.push_back(channel.last);
   }
   Prediction prediction(sources_of(plan.joints, columns), steps, firsts, plan.early ? 3.0 : 100.0);
-  if (plan.start != nullptr) prediction.assume(plan.start->assumed, plan.start->observations, columns);
+  if (plan.start != nullptr)
+    prediction.assume(plan.start->assumed, plan.start->observations, columns);
   return prediction;
 }
 

@@ -314,10 +314,11 @@ void bind_near(nb::module_& module) {
   module.def("near_columns", &columns, nb::arg("apart"), nb::arg("joints"), nb::arg("parents"),
              nb::arg("turnings"), "Code what columns have of their own, for the header.");
   nb::class_<Learning>(module, "NearLearning", "Learns what coders of `near` begin with.")
-      .def(nb::init<const std::vector<Learning::Told>&, std::uint64_t>(), nb::arg("assumed"),
-           nb::arg("observations"),
-           "Of each: channel, source, two shares, and the products of their features; and how many\n"
-           "observations these are worth.")
+      .def(
+          nb::init<const std::vector<Learning::Told>&, std::uint64_t>(), nb::arg("assumed"),
+          nb::arg("observations"),
+          "Of each: channel, source, two shares, and the products of their features; and how many\n"
+          "observations these are worth.")
       .def("learn", &Learning::learn, nb::arg("measure"), nb::arg("curves"), nb::arg("values"),
            nb::arg("header"), nb::arg("scale"), nb::arg("rate"), "Learn from rows.")
       .def(
