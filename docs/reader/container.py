@@ -88,8 +88,8 @@ def sections(data: bytes, magic: bytes) -> list[tuple[int, int, bytes]]:
     return found
 
 
-def unpacked(record: Record) -> bytes:
-    """Take packed content, which is the rest of a record."""
+def unpacked(record: Record, beside: bytes = b"") -> bytes:
+    """Take packed content, which is the rest of a record; ``beside`` is behind the dictionary."""
     (method,), size = record.raw(1), record.integer()
     data = record.raw(len(record.data) - record.at)
     if method == 1:
@@ -97,7 +97,7 @@ def unpacked(record: Record) -> bytes:
         filters = [{"id": lzma.FILTER_LZMA2, "dict_size": dictionary}]
         data = lzma.decompress(data, lzma.FORMAT_RAW, filters=filters)
     elif method == 2:
-        data = zlib.decompressobj(-15, zdict=DICTIONARY.read_bytes()).decompress(data)
+        data = zlib.decompressobj(-15, zdict=DICTIONARY.read_bytes() + beside).decompress(data)
     elif method != 0:
         raise CorruptError("packed by a method that this version does not have")
     if len(data) != size:

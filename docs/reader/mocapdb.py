@@ -9,6 +9,7 @@ import argparse
 import hashlib
 import sqlite3
 import sys
+import zlib
 from pathlib import Path
 
 from container import (
@@ -37,8 +38,9 @@ class Library:
         self.tables = sqlite3.connect(f"{path.resolve().as_uri()}?immutable=1", uri=True)
         (version,) = self.tables.execute("PRAGMA user_version").fetchone()
         (kind,) = self.tables.execute("PRAGMA application_id").fetchone()
-        if kind != 0x4D435A4C or not 2 <= version <= 4:
-            raise CorruptError("no library of version 2 to 4")
+        if kind != 0x4D435A4C or not 2 <= version <= 5:
+            raise CorruptError("no library of version 2 to 5")
+        self.version = version
         self.clips: dict[int, File] = {}
 
     def restored(self, name: str) -> bytes:
@@ -65,11 +67,22 @@ class Library:
             [clip],
         ).fetchone()
         kind, size, digest, head, skeleton, text, chunks = row
+        sample = layout = None
+        if self.version > 4:
+            sample, layout = self.tables.execute(
+                "SELECT sample, layout FROM clips LEFT JOIN skeletons ON skeletons.id = skeleton "
+                "WHERE clips.id = ?",
+                [clip],
+            ).fetchone()
+        beside = unpacked(Record(sample[4:])) if sample else b""
+        if sample and zlib.crc32(sample[4:]) != int.from_bytes(sample[:4], "little"):
+            raise CorruptError("the sample of a skeleton is damaged")
         joints = read_skeleton(Record(unpacked(Record(skeleton)))) if skeleton else []
-        told = Record(unpacked(Record(head)))
+        told = Record(unpacked(Record(head), beside))
         streams = [read_stream(told, joints) for _ in range(told.integer())]
         told.end()
-        file = File(joints, streams, kind, size, digest, unpacked(Record(text)))
+        text = unpacked(Record(text)) if layout is None else unpacked(Record(layout), beside)
+        file = File(joints, streams, kind, size, digest, text)
         for _, _, content in sections(b"\x89MCZ\1" + (chunks or b""), b"\x89MCZ"):
             read_chunk(Record(content), file, needs=True)
         return file

@@ -16,7 +16,7 @@ from mocapress.describe import describe_mcz
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Joint, Skeleton
 from mocapress.motion.kinematics import positions, rotations
-from mocapress.motion.units import Amount, amount
+from mocapress.motion.units import Amount, amount, figure_size
 from mocapress.source import Source
 
 Values = NDArray[np.float64]
@@ -178,6 +178,36 @@ def test_the_mean_is_what_was_asked(samples: Path) -> None:
     assert mean == pytest.approx(0.05, rel=0.03)
 
 
+@pytest.mark.parametrize("rate", [0.7, 2.0, 8.0])
+def test_a_rate_is_filled_and_kept(samples: Path, rate: float) -> None:
+    clip = mp.read(samples / "mocapbank.bvh")[:120]
+    assert clip.frame_time
+    budget = 1000 * rate * clip.frames * float(clip.frame_time)
+    encoded = mp.codec(f"near:rate={rate}").encode(clip.main, skeleton=clip.skeleton)
+    size = len(encoded.header) + sum(len(chunk.payload) for chunk in encoded.chunks)
+    assert 0.9 * budget < size <= budget
+
+
+def test_a_rate_that_no_scale_keeps_is_refused(samples: Path) -> None:
+    clip = mp.read(samples / "mocapbank.bvh")[:60]
+    with pytest.raises(ParameterError, match="near:rate; expected more"):
+        mp.codec("near:rate=0.001").encode(clip.main, skeleton=clip.skeleton)
+    for beside in ("max=1cm", "mean=1cm", "p=1cm", "feet=1cm", "max_error=1"):
+        with pytest.raises(ParameterError, match="no bound of errors beside it"):
+            mp.codec(f"near:rate=1,{beside}")
+
+
+def test_a_finer_quality_has_smaller_errors(samples: Path) -> None:
+    """The figure is some 1.7 m high, so that 1 stands for 1 cm and 9 for 0.01 cm."""
+    clip = mp.read(samples / "cmu_01_01.amc")[:200]
+    assert clip.skeleton is not None
+    size = figure_size(clip.skeleton)
+    for quality, part in ((1, 1.0), (5, 0.1), (9, 0.01)):
+        errors = joint_errors(clip, decoded_by(mp.codec(f"near:quality={quality}"), clip), 3 / CMU)
+        assert errors.mean() == pytest.approx(part / 170 * size / 3, rel=0.1)
+        assert errors.max() <= 1.6 * part / 170 * size
+
+
 def test_what_it_costs_falls_with_the_error(samples: Path) -> None:
     clip = mp.read(samples / "cmu_01_01.amc")[:400]
     sizes = [len(mp.compress(clip, f"near:p={p}cm")) for p in ("0.01", "0.1", "1")]
@@ -209,8 +239,9 @@ CODEC = "near:max=0.1cm"
         arm(300, moving=0.0),
         arm(300, joints=1),
         arm(70, joints=40),
+        arm(4, joints=300, moving=0.1),
     ],
-    ids=["one frame", "two", "nine", "65", "still", "one joint", "many joints"],
+    ids=["one frame", "two", "nine", "65", "still", "one joint", "many joints", "too many"],
 )
 def test_odd_clips_keep_the_bound(clip: Clip) -> None:
     errors = joint_errors(clip, decoded_by(mp.codec(CODEC), clip), 3)
@@ -266,6 +297,7 @@ def test_scales_are_kept_as_parts_of_the_figure() -> None:
     )
     columns = (*clip.columns, *(Column(f"j{j}.sx", j, "sx") for j in range(4)))
     scales = 1 + 0.2 * np.sin(np.arange(200)[:, None] / 30 + np.arange(4))
+    scales[90:, 2] += np.random.default_rng(0).normal(size=110)
     values = np.concatenate([clip.values, scales], axis=1)
     clip = Clip.of(values, columns, None, Skeleton(joints))
     decoded = decoded_by(mp.codec(CODEC), clip)
@@ -301,9 +333,12 @@ def test_angles_of_turned_joints_come_back_as_the_file_writes_them(clip: Clip) -
     assert np.abs(found.values - clip.values).max() < 3
 
 
-@pytest.mark.parametrize("step", [1, 5])
-def test_any_frame_rate_will_do(samples: Path, step: int) -> None:
-    clip = mp.read(samples / "cmu_01_01.amc")[:600:step]
+@pytest.mark.parametrize("rate", [240, 120, 24])
+def test_any_frame_rate_will_do(samples: Path, rate: int) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")[: 150 if rate > 120 else 600 : max(1, 120 // rate)]
+    if rate > 120:
+        middles = (clip.values[1:] + clip.values[:-1]) / 2
+        clip = clip.with_frames(np.stack([clip.values[:-1], middles], 1).reshape(-1, 62), None)
     errors = joint_errors(clip, decoded_by(mp.codec("near:max=0.2cm"), clip), 3 / CMU)
     assert errors.max() <= 0.2 / CMU
 
@@ -318,6 +353,31 @@ def test_without_a_skeleton_errors_are_degrees() -> None:
     with pytest.raises(ParameterError, match=r"without a skeleton.*expected degrees"):
         mp.codec("near:max=0.1cm").encode(clip.main)
     assert decoded_by(mp.codec("near"), clip).values.shape == clip.values.shape
+
+
+def test_an_amc_alone_keeps_degrees(samples: Path, tmp_path: Path) -> None:
+    path = tmp_path / "alone.amc"
+    text = (samples / "cmu_01_01.amc").read_bytes()
+    path.write_bytes(text[: text.index(b"\n90\r\n") + 1])
+    found = mp.read(mp.decompress(mp.compress(path, "near:max=0.05deg")))
+    # Six digits are printed of each value.
+    assert 0.01 < np.abs(found.values - mp.read(path).values).max() <= 0.0501
+
+
+def test_bones_that_stretch_keep_degrees() -> None:
+    """There is no telling where such joints are."""
+    clip = arm(100)
+    assert clip.skeleton is not None
+    joints = tuple(
+        replace(joint, channels=(*joint.channels, "l")) for joint in clip.skeleton.joints
+    )
+    columns = (*clip.columns, *(Column(f"j{j}.l", j, "l", "length") for j in range(4)))
+    values = np.concatenate([clip.values, 1 + clip.values[:, :4] / 100], axis=1)
+    clip = Clip.of(values, columns, None, Skeleton(joints))
+    found = decoded_by(mp.codec("near:max=0.05deg"), clip).values
+    assert 0.01 < np.abs(found - values).max() <= 0.05
+    with pytest.raises(ParameterError, match="expected degrees"):
+        mp.codec("near:max=0.1cm").encode(clip.main, skeleton=clip.skeleton)
 
 
 def test_degrees_may_be_asked_for_with_a_skeleton() -> None:

@@ -83,6 +83,14 @@ def test_markers_of_unknown_units_take_a_quality() -> None:
     assert marker_errors(clip, decoded_by(mp.codec("near:quality=5"), clip)).max() <= 2
 
 
+def test_what_stands_beside_markers_is_exact(samples: Path) -> None:
+    clip = mp.read(samples / "markers.c3d")
+    found = mp.load(mp.compress(clip, "near:max=1mm"))
+    assert marker_errors(clip, found).max() <= 1
+    for name in ("residuals", "cameras"):
+        assert found.streams[name].values.tobytes() == clip.streams[name].values.tobytes()
+
+
 @pytest.mark.parametrize("name", ["markers.c3d", "markers.trc"])
 def test_files_of_markers_come_back_in_their_layout(samples: Path, name: str) -> None:
     original = mp.read(samples / name)

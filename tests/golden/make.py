@@ -316,6 +316,7 @@ if __name__ == "__main__":
         put(f"{name}.diffma.json", partial(mp.to_json, data, codec))
         put(name, partial(mp.decompress, HERE / f"{name}.diffma.json"))
     put("v1_recurring.mocapdb", library)
+    put("v1_alike.mocapdb", library)  # with the schema of version 5
     learned = mp.Model("learner", bytes(range(100)) * 2)
     put("v1_learner.mcm", partial(model_bytes, learned))
     for program in sorted(HERE.parents[1].glob("core/check/*.cpp")):

@@ -128,7 +128,7 @@ def test_other_databases_and_later_versions_are_refused(tmp_path: Path) -> None:
     with mp.open_library(path, "a") as library:
         connection = library.db.connection
         connection.execute("PRAGMA user_version = 99")
-    with pytest.raises(mp.UnsupportedError, match="expected 4; found 99"):
+    with pytest.raises(mp.UnsupportedError, match="expected 5; found 99"):
         mp.open_library(path)
     path.unlink()
     with mp.open_library(path, "a") as library:
@@ -157,7 +157,14 @@ def test_newer_versions_take_older_files_over(
     with mp.open_library(path, "a") as library:
         assert library.db.connection.execute(
             "SELECT version, name FROM migrations ORDER BY 1"
-        ).fetchall() == [(1, "create"), (2, "needs"), (3, "search"), (4, "settings"), (5, "more")]
+        ).fetchall() == [
+            (1, "create"),
+            (2, "needs"),
+            (3, "search"),
+            (4, "settings"),
+            (5, "alike"),
+            (6, "more"),
+        ]
         assert library.read_bytes(BVH)
 
 

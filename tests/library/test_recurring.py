@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from older import make_older
 from running import mocapress
 from similar import bvh_of, similar_takes
 
@@ -194,12 +195,7 @@ def test_a_clip_comes_out_as_a_file_of_its_own(
 def test_a_library_of_version_1_takes_it_over(library: Library, files: dict[str, bytes]) -> None:
     path = library.path
     library.close()
-    with sqlite3.connect(path) as connection:
-        for table in ("needs", "signatures", "features", "settings"):
-            connection.execute(f"DROP TABLE {table}")
-        connection.execute("DELETE FROM migrations WHERE version > 1")
-        connection.execute("PRAGMA user_version = 1")
-    connection.close()
+    make_older(path, 1)
     with open_library(path) as again:
         sound(again, files)
     with open_library(path, "a") as again:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from older import make_older
 from PIL import Image
 from running import mocapress
 
@@ -366,12 +367,7 @@ def test_the_index_follows_the_clips(file: Path, bank: mp.Clip) -> None:
 def test_a_library_of_version_2_can_be_searched(file: Path, bank: mp.Clip) -> None:
     with mp.open_library(file) as library:
         expected = library.search(bank)
-    with sqlite3.connect(file) as connection:
-        for table in ("signatures", "features", "settings"):
-            connection.execute(f"DROP TABLE {table}")
-        connection.execute("DELETE FROM migrations WHERE version > 2")
-        connection.execute("PRAGMA user_version = 2")
-    connection.close()
+    make_older(file, 2)
     with mp.open_library(file) as library:
         assert library.search(bank) == expected
         assert library.check() == []

@@ -46,7 +46,7 @@ def raw(tmp_path: Path, samples: Path, take: Take) -> Path:
 def lib(tmp_path: Path, raw: Path) -> str:
     """Give a library of these files in two shards."""
     url = f"{tmp_path / 'lib'}/"
-    assert mocapress("library", "create", url, "--shard-size", 75000).exit_code == 0
+    assert mocapress("library", "create", url, "--shard-size", 68000).exit_code == 0
     done = mocapress("library", "add", url, raw)
     assert done.exit_code == 0, done.output
     return url
@@ -136,7 +136,7 @@ def test_only_what_is_new_is_added(lib: str, raw: Path, take: Take) -> None:
 
 def test_equal_files_make_equal_shards(lib: str, raw: Path, tmp_path: Path) -> None:
     url = f"{tmp_path / 'again'}/"
-    mocapress("library", "create", url, "--shard-size", 75000)
+    mocapress("library", "create", url, "--shard-size", 68000)
     assert mocapress("library", "add", url, raw, "-j", 2).exit_code == 0
     assert shards_of(url) == shards_of(lib)
 

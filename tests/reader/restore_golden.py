@@ -5,6 +5,7 @@ Run by test_branches.py, in a process of its own whose coverage is measured.
 
 import sys
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -37,8 +38,8 @@ def wrong() -> Iterator[Path]:
             restore.main()
             if target.read_bytes() != expected(path):
                 yield path
-    path = GOLDEN / "v1_recurring.mocapdb"
-    for name, original in clips.recurring().items():
+    libraries = sorted(GOLDEN.glob("*.mocapdb"))
+    for path, (name, original) in product(libraries, clips.recurring().items()):
         with TemporaryDirectory() as folder:
             target = Path(folder) / name
             sys.argv = ["mocapdb.py", str(path), name, "-o", str(target)]

@@ -101,25 +101,42 @@ def test_the_known_figure_of_near_decodes_to_the_same_bits(samples: Path, told: 
     assert_same(mp.read(samples / "cmu_01_01.amc")[: 100 if "chunk" in told else 20], told)
 
 
-def test_clips_of_a_library_come_back() -> None:
+# The same clips in libraries of version 3 and 5.
+LIBRARIES = pytest.mark.parametrize("name", ["v1_recurring.mocapdb", "v1_alike.mocapdb"])
+
+
+@LIBRARIES
+def test_clips_of_a_library_come_back(name: str) -> None:
     """Chunks of one are predicted from another's, and a third shares frames."""
-    golden = ROOT / "tests/golden/v1_recurring.mocapdb"
+    golden = ROOT / "tests/golden" / name
     with sqlite3.connect(f"{golden.as_uri()}?immutable=1", uri=True) as tables:
         assert tables.execute("SELECT count(*) FROM needs").fetchone()[0]
         assert tables.execute("SELECT count(*) FROM runs").fetchone()[0]
     tables.close()
     reader = mocapdb.Library(golden)
-    for name, original in clips.recurring().items():
-        assert reader.restored(name) == original
+    for clip, original in clips.recurring().items():
+        assert reader.restored(clip) == original
 
 
-def test_mocapress_reads_the_golden_library(tmp_path: Path) -> None:
+def test_clips_that_are_alike_are_packed_beside_a_sample() -> None:
+    golden = ROOT / "tests/golden/v1_alike.mocapdb"
+    with sqlite3.connect(f"{golden.as_uri()}?immutable=1", uri=True) as tables:
+        (found,) = tables.execute(
+            "SELECT count(layout) FROM clips JOIN skeletons ON skeletons.id = skeleton "
+            "WHERE sample IS NOT NULL"
+        ).fetchone()
+    tables.close()
+    assert found == len(clips.recurring())
+
+
+@LIBRARIES
+def test_mocapress_reads_the_golden_library(tmp_path: Path, name: str) -> None:
     path = tmp_path / "library.mocapdb"
-    path.write_bytes((ROOT / "tests/golden/v1_recurring.mocapdb").read_bytes())
+    path.write_bytes((ROOT / "tests/golden" / name).read_bytes())
     with mp.open_library(path) as opened:
         assert not opened.verify()
-        for name, original in clips.recurring().items():
-            assert opened.read_bytes(name) == original
+        for clip, original in clips.recurring().items():
+            assert opened.read_bytes(clip) == original
 
 
 def test_couplings_of_a_part_of_many_columns_decode_to_the_same_bits(tmp_path: Path) -> None:

@@ -1,10 +1,11 @@
 // Reads .mcz files: docs/format.md. Of what belongs to the original file, the layout is read if it is
 // asked for.
 import { chunksOfStreams, checkEnd, isChunk, readChunk } from "./chunks.js";
+import { crc32 } from "./crc32.js";
 import { decoderOf } from "./decoding.js";
 import { MczError } from "./error.js";
 import { readHead } from "./head.js";
-import { unpack } from "./packing.js";
+import { STORED, unpack } from "./packing.js";
 import { Record } from "./record.js";
 import { readSections, sectionsOf, TAG } from "./sections.js";
 import { joined } from "./xz.js";
@@ -50,24 +51,36 @@ export async function openMcz(bytes, assets) {
 /**
  * The file of a clip whose parts a library keeps apart: docs/format/library.md.
  *
- * @param {Object} parts the columns `name`, `file`, `format`, `size`, `sha256`, `problems` and `head`
- *     of `clips`; `skeleton`, the record; `text`, packed; `sections` of `chunks`; each may be null
+ * @param {Object} parts the columns `name`, `file`, `format`, `size`, `sha256`, `problems`, `head` and
+ *     `layout` of `clips`; `skeleton`, the record, and its `sample`; `text`, packed; `sections` of
+ *     `chunks`; each may be null
  * @param {import("./assets.js").Assets} assets
  * @returns {Promise<Mcz>} with the frames that the clip has in chunks of its own
  * @throws {MczError} where it is damaged
  */
 export async function mczOfParts(parts, assets) {
-  const unpacked = (bytes, what) =>
-    bytes ? unpack(new Record(bytes, what), MOST_UNPACKED, assets) : Uint8Array.of(0);
+  const unpacked = (bytes, what, beside) =>
+    bytes ? unpack(new Record(bytes, what), MOST_UNPACKED, assets, beside) : Uint8Array.of(0);
+  const sample = parts.sample ? await unpacked(soundSample(parts.sample), "sample") : undefined;
   const [skeletonRecord, rest] = await Promise.all([
     unpacked(parts.skeleton, "skeleton"),
-    unpacked(parts.head, "head"),
+    unpacked(parts.head, "head", sample),
   ]);
+  const layout = parts.layout && (await unpacked(parts.layout, "layout", sample));
+  const text = layout ? together(Uint8Array.of(STORED), integerOf(layout.length), layout) : parts.text;
   const { skeleton, streams } = readHead(together(skeletonRecord, rest));
   const sections = parts.sections ?? new Uint8Array(0);
   const chunks = chunksOfStreams(sectionsOf(sections).filter(isChunk).map(readChunk), streams);
   checkValues(streams, chunks, sections.length);
-  return { skeleton, streams, chunks, closed: true, original: originalOf(parts) };
+  return { skeleton, streams, chunks, closed: true, original: originalOf({ ...parts, text }) };
+}
+
+/** The sample of a skeleton, packed, without its checksum. */
+function soundSample(sample) {
+  const packed = sample.subarray(4);
+  const stored = new DataView(sample.buffer, sample.byteOffset).getUint32(0, true);
+  if (crc32(packed) !== stored) throw new MczError("damaged: the sample of a skeleton");
+  return packed;
 }
 
 /** The section *file* as `layoutOf` reads it. */

@@ -1,7 +1,8 @@
 import { MczError } from "./error.js";
 import { joined, unpackLzma2 } from "./xz.js";
 
-const [STORED, LZMA2, DEFLATE] = [0, 1, 2];
+export const STORED = 0;
+const [LZMA2, DEFLATE] = [1, 2];
 
 /**
  * Take packed content, which is the rest of a record.
@@ -9,9 +10,10 @@ const [STORED, LZMA2, DEFLATE] = [0, 1, 2];
  * @param {import("./record.js").Record} record
  * @param {number} most bytes that may come out
  * @param {import("./assets.js").Assets} assets
+ * @param {Uint8Array} [beside] what it was packed beside, in a library
  * @returns {Promise<Uint8Array>}
  */
-export async function unpack(record, most, assets) {
+export async function unpack(record, most, assets, beside = new Uint8Array(0)) {
   const method = record.integer(DEFLATE);
   const size = record.integer(most);
   const packed = record.raw(record.left);
@@ -21,7 +23,9 @@ export async function unpack(record, most, assets) {
       const dictionary = Math.min(Math.max(2 ** Math.ceil(Math.log2(size || 1)), 2 ** 12), 2 ** 26);
       data = unpackLzma2(await assets.module("vendor/xz/xz.wasm"), packed, dictionary, size);
     } else if (method !== STORED) {
-      data = await inflate(packed, await assets.bytes("dictionary1.bin"), size);
+      const known = await assets.bytes("dictionary1.bin");
+      const dictionary = joined([known, beside], known.length + beside.length);
+      data = await inflate(packed, dictionary, size);
     }
   } catch (error) {
     if (error instanceof MczError) throw record.fail(error.message);

@@ -47,9 +47,9 @@ def compress_clip(
         if not is_storable_time(stream.frame_time):
             raise UnsupportedError("frame time", found=str(stream.frame_time))
         alone, own = Clip({name: stream}, clip.skeleton), model if index == 0 else None
-        head, of_stream = coded(
-            alone, name, index, made, made.encode(stream, skeleton=clip.skeleton, model=own), own
-        )
+        way = made if index == 0 or made.lossless else codecs.codec(DEFAULT_CODEC)
+        encoded = way.encode(stream, skeleton=clip.skeleton, model=own)
+        head, of_stream = coded(alone, name, index, way, encoded, own)
         heads.append(head)
         chunks += of_stream
     facts = {**({"name": clip.name} if clip.name else {}), **clip.metadata}
@@ -80,10 +80,8 @@ def _checked(clip: Clip, codec: Codec, model: Model | None, blob: bytes) -> Comp
     loss = None
     for index, (name, stream) in enumerate(clip.streams.items()):
         rows = opened.rows(index).values
-        if not codec.lossless:
-            alone = Clip({name: stream}, clip.skeleton if index == 0 else None)
-            found = checked_loss(codec, alone, rows)
-            loss = loss or found
+        if index == 0 and not codec.lossless:
+            loss = checked_loss(codec, Clip({name: stream}, clip.skeleton), rows)
         elif rows.tobytes() != stream.values.tobytes():
             raise VerificationError(f"codec {codec.id} does not give back stream {name!r}")
     return Compressed(blob, None, loss, opened.mcz)

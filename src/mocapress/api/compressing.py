@@ -57,7 +57,8 @@ def compress(
         A path, the contents, or a binary stream, of a motion file or any other; or a clip, of
         which all streams, the skeleton, name and metadata are kept.
     codec
-        A codec or its text, ``"app:t=15,table=k3-non-uniform"``.
+        A codec or its text, ``"app:t=15,table=k3-non-uniform"``. A lossy one is for the first
+        stream; others, such as residuals of markers, come back as they are.
     asf_path
         The skeleton of an AMC; without it, the ASF beside the file is taken, if there is one.
     embed_asf

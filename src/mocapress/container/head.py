@@ -70,11 +70,11 @@ def write_head(head: Head) -> bytes:
 
 
 def write_parts(head: Head) -> tuple[bytes, bytes]:
-    """Give skeleton, not packed, and streams of a head, packed; a library keeps them apart."""
+    """Give the skeleton and the streams of a head, not packed; a library keeps them apart."""
     skeleton, streams = Writer(), Writer()
     write_skeleton(skeleton, head.skeleton)
     _write_streams(streams, head)
-    return bytes(skeleton.data), pack(bytes(streams.data))
+    return bytes(skeleton.data), bytes(streams.data)
 
 
 def split_parts(content: bytes) -> tuple[bytes, bytes]:
@@ -82,19 +82,12 @@ def split_parts(content: bytes) -> tuple[bytes, bytes]:
     data = unpack(content, "head", limits.UNPACKED)
     reader = Reader(data, "head")
     read_skeleton(reader)
-    return data[: reader.position], pack(data[reader.position :])
+    return data[: reader.position], data[reader.position :]
 
 
 def join_parts(skeleton: bytes | None, streams: bytes) -> bytes:
-    """Give the content of the section from what ``write_parts`` gave; None for no skeleton.
-
-    Raises
-    ------
-    CorruptError
-        When the streams cannot be unpacked.
-
-    """
-    return stored((skeleton or b"\0") + unpack(streams, "head", limits.UNPACKED))
+    """Give the content of the section from what ``write_parts`` gave; None for no skeleton."""
+    return stored((skeleton or b"\0") + streams)
 
 
 def read_head(content: bytes) -> Head:

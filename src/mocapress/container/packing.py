@@ -14,11 +14,22 @@ _LEAST_LZMA, _FITTING = 2**12, 8
 _PART = 2**20
 
 
-def pack(data: bytes, *, hard: bool = False) -> bytes:
-    """Compress bytes by whichever method makes them smallest; ``hard`` tries all on more."""
+def pack(data: bytes, *, hard: bool = False, beside: bytes = b"") -> bytes:
+    """Compress bytes by whichever method makes them smallest.
+
+    Parameters
+    ----------
+    data
+        The bytes.
+    hard
+        Whether all methods are tried on more.
+    beside
+        Bytes that they are probably like, which ``unpack`` is given, too.
+
+    """
     candidates = [(_STORED, data)]
     if len(data) < 2**16:
-        deflate = zlib.compressobj(9, zlib.DEFLATED, -15, 9, zdict=_dictionary())
+        deflate = zlib.compressobj(9, zlib.DEFLATED, -15, 9, zdict=_dictionary() + beside)
         candidates.append((_DEFLATE, deflate.compress(data) + deflate.flush()))
     # Where the dictionary fits, or for little data, LZMA never wins. Literal context 4 and no
     # position bits suit text, the default suits binary data.
@@ -42,7 +53,9 @@ def _record(method: int, size: int, packed: bytes) -> bytes:
     return bytes(writer.data) + packed
 
 
-def unpack(data: bytes | memoryview, section: str, most_bytes: int = 2**62) -> bytes:
+def unpack(
+    data: bytes | memoryview, section: str, most_bytes: int = 2**62, *, beside: bytes = b""
+) -> bytes:
     """Undo ``pack``.
 
     Raises
@@ -51,11 +64,11 @@ def unpack(data: bytes | memoryview, section: str, most_bytes: int = 2**62) -> b
         When the data is not what ``pack`` makes, or would give more than ``most_bytes``.
 
     """
-    return b"".join(unpacked_parts(data, section, most_bytes))
+    return b"".join(unpacked_parts(data, section, most_bytes, beside=beside))
 
 
 def unpacked_parts(
-    data: bytes | memoryview, section: str, most_bytes: int = 2**62
+    data: bytes | memoryview, section: str, most_bytes: int = 2**62, *, beside: bytes = b""
 ) -> Iterator[bytes]:
     """Undo ``pack``, part after part; see ``unpack``. What is wrong may show at the end only."""
     reader = Reader(data, section)
@@ -65,7 +78,7 @@ def unpacked_parts(
     if method == _STORED:
         parts: Iterator[bytes | None] = iter((packed,))
     else:
-        parts = _inflated(packed) if method == _DEFLATE else _unlzma(packed, size)
+        parts = _inflated(packed, beside) if method == _DEFLATE else _unlzma(packed, size)
     found, complete = 0, True
     try:
         for part in parts:
@@ -97,8 +110,8 @@ def _unlzma(packed: bytes, size: int) -> Iterator[bytes | None]:
         yield None
 
 
-def _inflated(packed: bytes) -> Iterator[bytes | None]:
-    inflate = zlib.decompressobj(-15, zdict=_dictionary())
+def _inflated(packed: bytes, beside: bytes) -> Iterator[bytes | None]:
+    inflate = zlib.decompressobj(-15, zdict=_dictionary() + beside)
     while not inflate.eof:
         part = inflate.decompress(packed, _PART)
         packed = inflate.unconsumed_tail

@@ -9,7 +9,7 @@ import numpy as np
 
 from mocapress.api.compressing import taken_apart
 from mocapress.api.restoring import contents
-from mocapress.container import Companion, Mcz, pack
+from mocapress.container import Companion, Mcz, Original, pack
 from mocapress.container.head import Head, split_parts
 from mocapress.container.original import write_problems
 from mocapress.errors import VerificationError
@@ -23,6 +23,8 @@ from mocapress.motion import Clip
 from mocapress.source import MCZ, Source
 from mocapress.storage import ExistsError
 
+_SHORT = 512
+"""Bytes of a packed layout that may be like others."""
 ADDED, REPLACED, UNCHANGED = "added", "replaced", "unchanged"
 
 
@@ -226,7 +228,9 @@ class Adder:
         labels: Sequence[str],
     ) -> int:
         mcz = made.mcz
-        head, codec, skeleton = store_head(connection, mcz)
+        original = mcz.original
+        layout = original.layout() if original and mcz.head and _is_short(original) else None
+        head, codec, skeleton = store_head(connection, mcz, layout or b"")
         facts = Facts(
             name,
             made.kind,
@@ -238,15 +242,14 @@ class Adder:
             codec=codec,
             head=head,
         )
-        original = mcz.original
         if original is not None:
             facts = facts._replace(
                 file=None if original_name(facts) == original.name else original.name,
                 size=original.size,
                 sha256=original.digest,
-                text=rows.text_id(connection, original.packed),
                 problems=write_problems(original.problems) if original.problems else None,
             )
+            facts = rows.with_text(connection, facts, original.packed, layout)
         clip = rows.insert_clip(connection, facts)
         rows.insert_chunks(connection, clip, mcz)
         rows.insert_runs(connection, clip, made.runs)
@@ -273,7 +276,13 @@ def add_companion(connection: Connection, beside: Beside) -> int:
     )
 
 
-def store_head(connection: Connection, mcz: Mcz) -> tuple[bytes | None, str | None, int | None]:
+def _is_short(original: Original) -> bool:
+    return len(original.packed) <= _SHORT
+
+
+def store_head(
+    connection: Connection, mcz: Mcz, layout: bytes
+) -> tuple[bytes | None, str | None, int | None]:
     """Keep what the head of a file says; give its record, the codec and the skeleton's row."""
     if mcz.head is None:
         return None, None, None
@@ -282,9 +291,13 @@ def store_head(connection: Connection, mcz: Mcz) -> tuple[bytes | None, str | No
     number = None
     if head.skeleton is not None:
         number = rows.skeleton_id(
-            connection, skeleton, head.skeleton.name, len(head.skeleton.joints)
+            connection,
+            skeleton,
+            head.skeleton.name,
+            len(head.skeleton.joints),
+            streams + layout,
         )
-    return streams, head.streams[0].codec.id or None, number
+    return rows.packed_head(connection, number, streams), head.streams[0].codec.id or None, number
 
 
 def _seconds(mcz: Mcz) -> float | None:

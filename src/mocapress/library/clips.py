@@ -108,6 +108,33 @@ def select(
     order: str = "name",
 ) -> list[StoredClip]:
     """Give clips that fulfil all conditions; see ``Library.clips``."""
+    where, values = _condition(patterns, label, min_duration, skeleton)
+    rows = connection.execute(
+        f"SELECT {_FACTS} FROM clips WHERE {where} ORDER BY {order}",  # noqa: S608
+        values,
+    )
+    return [_stored(library, row) for row in rows]
+
+
+def names_of(
+    connection: sqlite3.Connection, patterns: Sequence[str] = (), *, label: str | None = None
+) -> list[str]:
+    """Give the names of clips that fulfil all conditions, in order."""
+    where, values = _condition(patterns, label)
+    rows = connection.execute(
+        f"SELECT name FROM clips WHERE {where} ORDER BY name",  # noqa: S608
+        values,
+    )
+    return [name for (name,) in rows]
+
+
+def _condition(
+    patterns: Sequence[str],
+    label: str | None = None,
+    min_duration: float | None = None,
+    skeleton: str | None = None,
+) -> tuple[str, list[Any]]:
+    """Give the SQL that all conditions make, and its parameters."""
     where, values = names.condition(patterns)
     conditions = [f"({where})"]
     if label is not None:
@@ -119,11 +146,7 @@ def select(
     if skeleton is not None:
         conditions.append("skeleton IN (SELECT id FROM skeletons WHERE name GLOB ?)")
         values.append(skeleton)
-    rows = connection.execute(
-        f"SELECT {_FACTS} FROM clips WHERE {' AND '.join(conditions)} ORDER BY {order}",  # noqa: S608
-        values,
-    )
-    return [_stored(library, row) for row in rows]
+    return " AND ".join(conditions), values
 
 
 def by_id(library: "Reading", connection: sqlite3.Connection, clip: int) -> StoredClip:

@@ -21,7 +21,6 @@ from mocapress.errors import (
     UnsupportedError,
 )
 from mocapress.library import schema
-from mocapress.source import LIMIT
 from mocapress.storage import write_whole
 
 WAIT = 10.0
@@ -56,9 +55,7 @@ class Database:
 
     """
 
-    def __init__(
-        self, path: Path, *, writable: bool, wait: float, limit: int | None = LIMIT
-    ) -> None:
+    def __init__(self, path: Path, *, writable: bool, wait: float, limit: int | None) -> None:
         if sqlite3.sqlite_version_info < _LEAST_SQLITE:
             raise UnsupportedError(
                 "libraries need SQLite", expected="3.37 or later", found=sqlite3.sqlite_version

@@ -1,7 +1,9 @@
 """Clips of a library as ``.mcz`` files of their own."""
 
+from dataclasses import replace
+
 from mocapress.api.clips import compress_clip
-from mocapress.container import Companion, Head, Mcz, MczWriter, open_mcz, unpack
+from mocapress.container import Companion, Head, Mcz, MczWriter, open_mcz, pack, unpack
 from mocapress.container.limits import most_companions
 from mocapress.library.database import Database
 from mocapress.library.opened import OpenedClip, inherited
@@ -21,7 +23,10 @@ def export(db: Database, opened: OpenedClip) -> bytes:
     if head is not None:
         writer.head(head)
     if opened.mcz.original is not None:
-        writer.original(opened.mcz.original)
+        original = opened.mcz.original
+        if opened.facts.layout is not None:
+            original = replace(original, packed=pack(original.layout()))
+        writer.original(original)
     for companion in companions(db, opened.clip):
         writer.companion(companion)
     if opened.mcz.notes:

@@ -9,13 +9,13 @@ import numpy as np
 from mocapress.api.clips import compress_clip
 from mocapress.codecs import Codec, Model
 from mocapress.container import Mcz, open_mcz
-from mocapress.container.head import write_parts
+from mocapress.container.head import Head, write_parts
 from mocapress.errors import ParameterError
 from mocapress.library import rows
 from mocapress.library.coding import Coder, shared, without_runs
 from mocapress.library.needs import needing
 from mocapress.library.opened import OpenedClip, inherited
-from mocapress.library.rows import Connection
+from mocapress.library.rows import Connection, Facts
 from mocapress.library.sharing import Values, anchors
 from mocapress.motion import Clip, Stream
 from mocapress.source import Source
@@ -119,11 +119,17 @@ def store(connection: Connection, clip: int, made: Mcz, model: Model | None) -> 
     found = rows.read_clip(connection, clip)
     assert found is not None
     assert made.head is not None
-    facts = found[0]._replace(head=write_parts(made.head)[1], codec=made.head.streams[0].codec.id)
+    facts = _coded_as(connection, found[0], made.head)
     rows.update_clip(connection, clip, facts)
     rows.insert_chunks(connection, clip, made)
     if model is not None:
         rows.add_model(connection, model)
+
+
+def _coded_as(connection: Connection, facts: Facts, head: Head) -> Facts:
+    """Give the facts of a clip with another head; its skeleton stays."""
+    streams = rows.packed_head(connection, facts.skeleton, write_parts(head)[1])
+    return facts._replace(head=streams, codec=head.streams[0].codec.id)
 
 
 def _hand_over(connection: Connection, coder: Coder, clip: int, removed: Sequence[int]) -> None:
@@ -139,7 +145,7 @@ def _hand_over(connection: Connection, coder: Coder, clip: int, removed: Sequenc
         if heir is None or source is None or source.clip != clip or source.runs:
             continue
         head = inherited(heir, source)
-        facts = heir.facts._replace(head=write_parts(head)[1], codec=head.streams[0].codec.id)
+        facts = _coded_as(connection, heir.facts, head)
         rows.update_clip(connection, other, facts)
         connection.execute("DELETE FROM runs WHERE clip = ?", [other])
         for table, column in (

@@ -15,7 +15,9 @@ from mocapress.codecs import Model
 from mocapress.container import Mcz, pack, unpack
 from mocapress.container.chunks import write_list
 from mocapress.container.skeletons import write_skeleton
+from mocapress.errors import CorruptError
 from mocapress.library import names
+from mocapress.library.schema import ALIKE, version_of
 from mocapress.models import model_bytes
 from mocapress.motion import Skeleton
 from mocapress.records import Writer
@@ -40,6 +42,7 @@ class Facts(NamedTuple):
     codec: str | None = None
     head: bytes | None = None
     problems: bytes | None = None
+    layout: bytes | None = None
 
 
 class Run(NamedTuple):
@@ -64,6 +67,10 @@ RUN_COLUMNS = ", ".join(Run._fields)
 
 
 COLUMNS = ", ".join(Facts._fields)
+_COLUMNS_BEFORE = ", ".join(Facts._fields[:-1])
+_MOST_SAMPLE = 2**14
+_MOST_LAYOUT = 128
+"""Bytes up to which a layout stands in the row of its clip."""
 
 
 def hash_of(data: bytes) -> int:
@@ -73,7 +80,8 @@ def hash_of(data: bytes) -> int:
 
 def checksum(facts: Facts) -> int:
     """Give the checksum of a row of ``clips``."""
-    return zlib.crc32(b"".join(_bytes(value) + b"\0" for value in facts))
+    told = facts if facts.layout is not None else facts[:-1]  # older versions have no such column
+    return zlib.crc32(b"".join(_bytes(value) + b"\0" for value in told))
 
 
 def _bytes(value: Any) -> bytes:
@@ -107,8 +115,9 @@ def update_clip(connection: Connection, clip: int, facts: Facts) -> None:
 
 def read_clip(connection: Connection, clip: int) -> tuple[Facts, int] | None:
     """Give a row of ``clips`` and its checksum."""
+    columns = COLUMNS if version_of(connection) >= ALIKE else f"{_COLUMNS_BEFORE}, NULL"
     row = connection.execute(
-        f"SELECT {COLUMNS}, checksum FROM clips WHERE id = ?",  # noqa: S608
+        f"SELECT {columns}, checksum FROM clips WHERE id = ?",  # noqa: S608
         [clip],
     ).fetchone()
     return None if row is None else (Facts(*row[:-1]), row[-1])
@@ -133,8 +142,13 @@ def skeleton_hash(skeleton: Skeleton) -> int:
     return hash_of(bytes(writer.data))
 
 
-def skeleton_id(connection: Connection, record: bytes, name: str, joints: int) -> int:
-    """Give the row of a skeleton, which is added where there is none yet; see ``write_parts``."""
+def skeleton_id(
+    connection: Connection, record: bytes, name: str, joints: int, sample: bytes = b""
+) -> int:
+    """Give the row of a skeleton, which is added where there is none yet; see ``write_parts``.
+
+    ``sample`` is what its clips are likely to have: a head and a layout.
+    """
     wanted = hash_of(record)
     # There are few: an index would cost more than it brings.
     for number, packed in connection.execute(
@@ -143,10 +157,64 @@ def skeleton_id(connection: Connection, record: bytes, name: str, joints: int) -
         if unpack(packed, "skeleton", len(record)) == record:
             return int(number)
     made = connection.execute(
-        "INSERT INTO skeletons(name, joints, hash, record) VALUES(?, ?, ?, ?)",
-        (name, joints, wanted, pack(record)),
+        "INSERT INTO skeletons(name, joints, hash, record, sample) VALUES(?, ?, ?, ?, ?)",
+        (name, joints, wanted, pack(record), _packed_sample(sample)),
     )
     return int(made.lastrowid or 0)
+
+
+def _packed_sample(sample: bytes) -> bytes | None:
+    if not 0 < len(sample) <= _MOST_SAMPLE:
+        return None
+    packed = pack(sample)
+    return zlib.crc32(packed).to_bytes(4, "little") + packed
+
+
+def sample_of(connection: Connection, skeleton: int | None) -> bytes:
+    """Give what heads and layouts of the clips of a skeleton are packed beside.
+
+    Raises
+    ------
+    CorruptError
+        When it is damaged.
+
+    """
+    if skeleton is None or version_of(connection) < ALIKE:
+        return b""
+    row = connection.execute("SELECT sample FROM skeletons WHERE id = ?", [skeleton]).fetchone()
+    if row is None or row[0] is None:
+        return b""
+    crc, packed = row[0][:4], row[0][4:]
+    if zlib.crc32(packed).to_bytes(4, "little") != crc:
+        raise CorruptError(f"damaged: row {skeleton} of skeletons")
+    return unpack(packed, "sample", _MOST_SAMPLE)
+
+
+def packed_head(connection: Connection, skeleton: int | None, streams: bytes) -> bytes:
+    """Give the streams of a head as a clip of a skeleton has them; see ``write_parts``."""
+    return pack(streams, beside=sample_of(connection, skeleton))
+
+
+def with_text(connection: Connection, facts: Facts, packed: bytes, layout: bytes | None) -> Facts:
+    """Say where the text of a clip is: in its row, where little of it is its own.
+
+    Parameters
+    ----------
+    connection
+        Of the library.
+    facts
+        Of the clip.
+    packed
+        The text as a ``.mcz`` has it.
+    layout
+        The same, not packed, where it is one that may be like others of its skeleton.
+
+    """
+    if layout is not None and len(layout) <= _MOST_SAMPLE and facts.skeleton is not None:
+        alike = pack(layout, beside=sample_of(connection, facts.skeleton))
+        if len(alike) <= _MOST_LAYOUT:
+            return facts._replace(layout=alike)
+    return facts._replace(text=text_id(connection, packed))
 
 
 def add_model(connection: Connection, model: Model) -> None:

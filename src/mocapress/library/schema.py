@@ -1,5 +1,6 @@
 """The tables of a library: docs/format/library.md."""
 
+import re
 import sqlite3
 from collections.abc import Sequence
 from datetime import UTC, datetime
@@ -89,10 +90,22 @@ _SETTINGS = """
 CREATE TABLE settings(name TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT, WITHOUT ROWID;
 """
 
+_ALIKE = """
+ALTER TABLE skeletons ADD COLUMN sample BLOB;
+ALTER TABLE clips ADD COLUMN layout BLOB;
+DROP INDEX clips_by_text;
+CREATE INDEX clips_by_text ON clips(text) WHERE text IS NOT NULL;
+DROP INDEX companions_by_text;
+DROP INDEX belongs_by_companion;
+DROP INDEX labels_by_label;
+"""
+
 SEARCH = 3
 """The first version of the schema that has an index for search."""
 SETTINGS = 4
 """The first version of the schema that has settings."""
+ALIKE = 5
+"""The first version of the schema in which clips are packed beside a sample of their skeleton."""
 NO_INDEX = ("index", "no")
 """The setting of a library whose clips are not indexed for search when they are added."""
 MIGRATIONS = [
@@ -100,6 +113,7 @@ MIGRATIONS = [
     Migration("needs", _statements(_NEEDS)),
     Migration("search", _statements(_SEARCH)),
     Migration("settings", _statements(_SETTINGS)),
+    Migration("alike", _statements(_ALIKE)),
 ]
 """Version n of the schema is what the first n of them make."""
 
@@ -112,6 +126,7 @@ def empty(*, indexed: bool = True) -> bytes:
         migrate(connection)
         if not indexed:
             connection.execute("INSERT INTO settings VALUES(?, ?)", NO_INDEX)
+        connection.execute("VACUUM")
         data = bytearray(connection.serialize())
     finally:
         connection.close()
@@ -149,6 +164,21 @@ def version_of(connection: sqlite3.Connection) -> int:
     return version
 
 
+def _made_by(migrations: Sequence[Migration]) -> set[str]:
+    """Give what ``sqlite_schema`` says of all that migrations made."""
+    made: dict[str, str] = {}
+    for statement in (each for migration in migrations for each in migration.statements):
+        does, _, name = re.split(r"[ (]", statement)[:3]
+        if does == "CREATE":
+            made[name] = statement
+        elif does == "DROP":
+            del made[name]
+        else:
+            column = statement.partition(" ADD COLUMN ")[2]
+            made[name] = made[name].replace(") STRICT", f", {column}) STRICT")
+    return {*made.values()}
+
+
 def check(connection: sqlite3.Connection, file: str) -> None:
     """See that a database is a library that this version can read.
 
@@ -177,7 +207,7 @@ def check(connection: sqlite3.Connection, file: str) -> None:
             "version of the library", file=file, expected=str(len(MIGRATIONS)), found=str(version)
         )
     rows = connection.execute("SELECT type, name, sql FROM sqlite_schema").fetchall()
-    made = {sql for migration in MIGRATIONS[:version] for sql in migration.statements}
+    made = _made_by(MIGRATIONS[:version])
     missing = made - {sql for _, _, sql in rows}
     triggers = [name for kind, name, _ in rows if kind == "trigger"]
     if missing or triggers:

@@ -1,18 +1,20 @@
 """The ``.mcz`` of a clip in a library: put together from the tables as far as it is read."""
 
 import sqlite3
+from functools import cached_property
 
 from mocapress.container import Entry, Original, unpack
 from mocapress.container.chunks import read_list, write_end
 from mocapress.container.head import join_parts
-from mocapress.container.limits import UNPACKED
+from mocapress.container.limits import UNPACKED, most_layout
 from mocapress.container.original import read_problems, write_notes, write_original
+from mocapress.container.packing import stored
 from mocapress.container.sections import section
 from mocapress.container.tags import MAGIC, VERSION, Tag
 from mocapress.errors import CorruptError, ParameterError
 from mocapress.library.chunks import Chunks
 from mocapress.library.database import Database
-from mocapress.library.rows import Facts, checksum, hash_of, read_clip
+from mocapress.library.rows import Facts, checksum, hash_of, read_clip, sample_of
 from mocapress.records import Reader
 from mocapress.source import Source
 
@@ -86,9 +88,10 @@ class StoredMcz(Source):
         facts = self.facts
         parts = [MAGIC, bytes([VERSION])]
         if facts.head is not None:
-            parts.append(section(Tag.HEAD, join_parts(self._skeleton(), facts.head)))
-        if facts.text is not None:
-            parts.append(section(Tag.FILE, write_original(self._original(facts.text))))
+            parts.append(section(Tag.HEAD, join_parts(self._skeleton(), self._streams(facts.head))))
+        packed = self._text()
+        if packed is not None:
+            parts.append(section(Tag.FILE, write_original(self._original(packed))))
         notes = self._notes()
         if notes:
             parts.append(section(Tag.NOTES, write_notes(notes)))
@@ -118,23 +121,44 @@ class StoredMcz(Source):
             raise CorruptError(f"damaged: row {number} of skeletons", file=self.name)
         return record
 
-    def _original(self, text: int) -> Original:
+    def _streams(self, packed: bytes) -> bytes:
+        return unpack(packed, "head", UNPACKED, beside=self._sample)
+
+    @cached_property
+    def _sample(self) -> bytes:
+        try:
+            return sample_of(self.db.connection, self.facts.skeleton)
+        except CorruptError as error:
+            raise CorruptError(error.what, file=self.name) from error
+
+    def _text(self) -> bytes | None:
+        """Give the layout, or a file that is no motion, packed."""
         facts = self.facts
+        if facts.layout is not None:
+            most = most_layout(facts.size or 0, len(facts.layout) + len(self._sample))
+            return stored(unpack(facts.layout, "layout", most, beside=self._sample))
+        if facts.text is None:
+            return None
         row = self.db.connection.execute(
-            "SELECT packed, hash FROM texts WHERE id = ?", [text]
+            "SELECT packed, hash FROM texts WHERE id = ?", [facts.text]
         ).fetchone()
         if row is None or hash_of(row[0]) != row[1]:
-            raise CorruptError(f"damaged: row {text} of texts", file=self.name)
+            raise CorruptError(f"damaged: row {facts.text} of texts", file=self.name)
+        packed: bytes = row[0]
+        return packed
+
+    def _original(self, packed: bytes) -> Original:
+        facts = self.facts
         problems = read_problems(Reader(facts.problems or b"\0", "problems"))
         kind = (facts.format or "") if facts.head is not None else ""
         return Original(
-            kind, original_name(facts), facts.size or 0, facts.sha256 or b"", problems, row[0]
+            kind, original_name(facts), facts.size or 0, facts.sha256 or b"", problems, packed
         )
 
 
 def _possible(facts: Facts) -> bool:
     """Say whether facts are such that a file can be put together."""
-    digest = facts.text is None or len(facts.sha256 or b"") == 32
+    digest = (facts.text is None and facts.layout is None) or len(facts.sha256 or b"") == 32
     return digest and (facts.size or 0) >= 0 and facts.frames >= 0
 
 

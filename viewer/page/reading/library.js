@@ -4,7 +4,7 @@ import { FileError } from "./file_error.js";
 import { readOpened } from "./mcz.js";
 
 const APPLICATION_ID = 0x4d435a4c;
-const VERSION = 4;
+const VERSION = 5;
 const TABLES = ["clips", "chunks", "runs", "texts", "skeletons", "labels", "models"];
 const [JOURNAL, NOT_WAL] = [18, 1]; // where the header says that there is a write-ahead log
 
@@ -13,9 +13,9 @@ const CATALOGUE = `
       frames * frame_time AS seconds, skeletons.name AS skeleton,
       (SELECT group_concat(label, char(0)) FROM labels WHERE clip = clips.id) AS labels
   FROM clips LEFT JOIN skeletons ON skeletons.id = skeleton WHERE frames > 0 ORDER BY clips.name`;
-const CLIP = `
+const clipOf = (own) => `
   SELECT clips.name AS name, file, format, size, sha256, problems, head, record AS skeleton,
-      packed AS text, list, sections
+      packed AS text, list, sections, ${own}
   FROM clips LEFT JOIN skeletons ON skeletons.id = skeleton LEFT JOIN texts ON texts.id = text
       LEFT JOIN chunks ON chunks.clip = clips.id WHERE clips.id = ?`;
 const RUNS = `
@@ -27,6 +27,7 @@ const NEEDS = "SELECT EXISTS (SELECT 1 FROM needs WHERE clip = ?)";
 /** A library in memory; it is only read. */
 export class SqliteLibrary {
   #hasNeeds = false;
+  #clip = "";
 
   /**
    * @param {Uint8Array} bytes the file, which is changed: a library on a disk keeps a log, one here
@@ -69,6 +70,7 @@ export class SqliteLibrary {
     const tables = this.db.selectValues("SELECT name FROM sqlite_schema WHERE type = 'table'");
     const missing = TABLES.find((table) => !tables.includes(table));
     if (missing) throw new FileError("not the tables of a library", { expected: missing });
+    this.#clip = clipOf(version < 5 ? "NULL AS sample, NULL AS layout" : "sample, layout");
     this.#hasNeeds = tables.includes("needs"); // from version 2 on
   }
 
@@ -100,7 +102,7 @@ export class SqliteLibrary {
   }
 
   async #open(id) {
-    const row = this.#said(() => this.db.selectObject(CLIP, [id]));
+    const row = this.#said(() => this.db.selectObject(this.#clip, [id]));
     if (!row) throw new FileError("damaged: there is no such clip", { found: `id ${id}` });
     if (!row.head) throw new FileError("holds a file that is no motion", { file: row.name });
     if (this.#hasNeeds && this.#said(() => this.db.selectValue(NEEDS, [id]))) {

@@ -1,5 +1,6 @@
 """``library list``."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -23,11 +24,9 @@ def list_clips(
     debug: Debug = False,
 ) -> None:
     """List clips by name, one a line; with --long the columns are separated by tabs."""
-    import json as jsonlib
     import sys
-    from dataclasses import fields
 
-    from mocapress.library.clips import select
+    from mocapress.library.clips import names_of, select
 
     wanted = patterns or ()
     with (
@@ -35,19 +34,26 @@ def list_clips(
         catalogue(file) as db,
         db.reading() as connection,
     ):
-        clips = select(None, connection, wanted, label=label)
-        refuse_unknown(file, wanted, lambda pattern: bool(select(None, connection, [pattern])))
-    if json:
-        names = [field.name for field in fields(clips[0])][1:] if clips else []
-        rows = [
-            {name: getattr(clip, name) for name in names} | {"duration": clip.duration}
-            for clip in clips
-        ]
-        text = jsonlib.dumps(rows, indent=1)
-    else:
-        text = "\n".join(_line(clip) if long else clip.name for clip in clips)
+        if json or long:
+            clips = select(None, connection, wanted, label=label)
+            text = _json(clips) if json else "\n".join(map(_line, clips))
+        else:
+            text = "\n".join(names_of(connection, wanted, label=label))
+        refuse_unknown(file, wanted, lambda pattern: bool(names_of(connection, [pattern])))
     if text:
         sys.stdout.write(text + "\n")
+
+
+def _json(clips: "Sequence[StoredClip]") -> str:
+    import json
+    from dataclasses import fields
+
+    names = [field.name for field in fields(clips[0])][1:] if clips else []
+    rows = [
+        {name: getattr(clip, name) for name in names} | {"duration": clip.duration}
+        for clip in clips
+    ]
+    return json.dumps(rows, indent=1)
 
 
 def _line(clip: "StoredClip") -> str:

@@ -107,7 +107,8 @@ def catalogue(path: str) -> "Iterator[Database]":
         with open_library(path) as library:
             yield library.db
         return
-    with closing(Database(Path(path), writable=False, wait=WAIT)) as db:
+    # Nothing is restored by the tables alone.
+    with closing(Database(Path(path), writable=False, wait=WAIT, limit=None)) as db:
         yield db
 
 

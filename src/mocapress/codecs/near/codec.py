@@ -1,7 +1,7 @@
 """The codec ``near``."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from typing import ClassVar
 
@@ -31,6 +31,8 @@ from mocapress.motion.units import amount
 
 _MOST_FRAMES = 1 << 20
 _QUALITIES = range(1, 10)
+_ASSUMED_RATE = 120.0
+"""Frames a second of a clip that states none, such as an AMC."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +65,9 @@ class Near(Codec):
     parts: str = ""
     """Largest errors of joints and parts of the body that have their own: ``feet=0.02cm,head=1mm``.
     """
+    rate: float = 0.0
+    """Kilobytes of 1000 bytes a second, instead of an error; 120 frames a second where the clip
+    does not say."""
     rest: ClassVar[str] = "parts"
 
     def __post_init__(self) -> None:
@@ -74,6 +79,10 @@ class Near(Codec):
             raise ParameterError("near:p", expected="neither max nor mean beside it")
         if not isinstance(self.quality, int) or self.quality not in _QUALITIES:
             raise ParameterError("near:quality", expected="1 to 9", found=repr(self.quality))
+        if not 0 <= self.rate < inf:
+            raise ParameterError("near:rate", expected="kB/s above 0", found=repr(self.rate))
+        if self.rate and (self.max or self.mean or self.p or self.parts or self.max_error < inf):
+            raise ParameterError("near:rate", expected="no bound of errors beside it")
         if not self.max_error >= 0:
             raise ParameterError("near:max_error", expected="0 or more", found=repr(self.max_error))
         if not isinstance(self.chunk, int) or not 1 <= self.chunk <= _MOST_FRAMES:
@@ -127,7 +136,12 @@ class Near(Codec):
 
         """
         goal = self.goal(skeleton, stream.columns, stream.values)
-        return Encoder(goal, self.max_error, self.chunk, stream, skeleton).encode()
+        budget = inf
+        if self.rate:
+            goal = replace(goal, most=inf)
+            seconds = stream.frames * float(stream.frame_time or 1 / _ASSUMED_RATE)
+            budget = 1000 * self.rate * seconds
+        return Encoder(goal, self.max_error, self.chunk, stream, skeleton, budget).encode()
 
     def decode(
         self,

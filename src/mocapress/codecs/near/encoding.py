@@ -13,7 +13,7 @@ from mocapress.codecs.near.figure import figure_of, tree_of
 from mocapress.codecs.near.goal import MEAN_OF_MOST, Goal, Measure
 from mocapress.codecs.near.header import COARSE, STEPS_PER_OCTAVE, joints_of, pack_header
 from mocapress.codecs.near.turning import Turning, is_known, known_turnings, nearest, turnings_of
-from mocapress.errors import VerificationError
+from mocapress.errors import ParameterError, VerificationError
 from mocapress.motion import Skeleton, Stream
 
 _MOST_STEP = 4096
@@ -24,6 +24,9 @@ _NEAR_ENOUGH = 0.01
 _INNER, _OUTER = 1.05, 1.5
 """Means of joints may be so many times that of all; of those without further joints, the latter."""
 _EVEN_ENOUGH = 1.02
+_MOST_TRIES = 12
+_FULL_ENOUGH, _AIM = 0.97, 0.985
+"""Of a budget of bytes: what is near enough, and what is tried next."""
 _HASTE = 2.0
 _SAMPLE = 256
 """Frames by which channels are weighed."""
@@ -62,8 +65,9 @@ class Encoder:
         chunk: int,
         stream: Stream,
         skeleton: Skeleton | None,
+        budget: float = inf,
     ) -> None:
-        self.goal, self.chunk = goal, chunk
+        self.goal, self.chunk, self.budget = goal, chunk, budget
         self.values = np.ascontiguousarray(stream.values, dtype=np.float64)
         figure = figure_of(skeleton, stream.columns, self.values)
         self.measure = Measure(goal, figure, stream.columns)
@@ -103,7 +107,7 @@ class Encoder:
         frames, channels = self.values.shape
         if not frames or not channels:
             return Encoded(self._header(1.0, (0.0, 0.0)), self._empty())
-        scale = self._scale()
+        scale = self._scale() if self.budget == inf else self._scale_of_budget()
         payloads, errors = self._chunks(scale, self.most)
         largest = errors.max(axis=0, initial=0.0)
         for most, found in zip(self.most, largest, strict=True):
@@ -234,6 +238,34 @@ class Encoder:
             chunks.append(Chunk(first, len(found), payload))
             errors.append(found)
         return chunks, np.concatenate(errors)
+
+    def _scale_of_budget(self) -> float:
+        """Find about the finest scale at which header and chunks take no more than the budget."""
+        unbounded = np.full(self.measure.points, inf)
+        scale, power = self.goal.mean * _SCALE_OF_MEAN, -0.7
+        best: tuple[int, float] | None = None
+        before: tuple[float, float] | None = None
+        for _ in range(_MOST_TRIES):
+            chunks, _ = self._chunks(scale, unbounded)
+            header = len(self._header(scale, (scale, scale)))
+            size = header + sum(len(chunk.payload) for chunk in chunks)
+            if size <= self.budget and (best is None or size > best[0]):
+                best = size, scale
+            if _FULL_ENOUGH * self.budget <= size <= self.budget:
+                break
+            if before and before[0] != scale and before[1] != size:
+                found = log(size / before[1]) / log(scale / before[0])
+                power = min(max(found, -1.5), -0.1)
+            before = scale, size
+            move = log(_AIM * self.budget / size) / power
+            scale *= float(np.exp(min(max(move, -3.0), 3.0)))
+        if best is None:
+            raise ParameterError(
+                "near:rate",
+                expected="more",
+                found=f"{self.budget:.0f} bytes for this clip, too few",
+            )
+        return best[1]
 
     def _scale(self) -> float:
         """Find the scale at which the mean error is the goal's."""

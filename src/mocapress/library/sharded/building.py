@@ -217,7 +217,7 @@ def publish(
     """Seal what was built, and write the shard."""
     target = library.path.with_name("sealed.mocapdb")
     name = seal(library.db, target)
-    with closing(Database(target, writable=False, wait=WAIT)) as db:
+    with closing(Database(target, writable=False, wait=WAIT, limit=LIMIT)) as db:
         rows = rows_of(db, name)
     for row in rows:
         if row.get("codec") and row["kind"] == CLIP:

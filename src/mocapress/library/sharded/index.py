@@ -91,8 +91,9 @@ def _insert_clip(
         skeletons[record] = len(skeletons) + 1
         wanted = hash_of(unpack(record, "skeleton", UNPACKED))
         facts = (skeletons[record], row["skeleton"], row["joints"], wanted, record)
-        connection.execute("INSERT INTO skeletons VALUES(?, ?, ?, ?, ?)", facts)
-    own = {column: row[column] for column in Facts._fields if column not in ("skeleton", "text")}
+        connection.execute("INSERT INTO skeletons VALUES(?, ?, ?, ?, ?, NULL)", facts)
+    elsewhere = ("skeleton", "text", "layout")
+    own = {column: row[column] for column in Facts._fields if column not in elsewhere}
     text = None if row["text_size"] is None else number
     clip = Facts(**own, skeleton=skeletons.get(record), text=text)
     marks = ", ".join("?" * (len(clip) + 2))

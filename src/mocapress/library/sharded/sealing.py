@@ -12,11 +12,13 @@ from mmap import mmap
 from pathlib import Path
 from typing import Any
 
+from mocapress.container import pack, unpack
+from mocapress.container.limits import UNPACKED
 from mocapress.errors import FormatError, VerificationError
 from mocapress.library import schema
 from mocapress.library.database import Database
 from mocapress.library.opened import OpenedClip
-from mocapress.library.rows import Facts, read_clip
+from mocapress.library.rows import Facts, read_clip, sample_of
 from mocapress.library.sharded.manifest import CLIP, COMPANION, MODEL
 from mocapress.library.sharded.places import Place, joined, last_values, mapped
 
@@ -154,6 +156,12 @@ def _clip(db: Database, clip: int) -> dict[str, Any]:
     )
     row: dict[str, Any] = {"kind": CLIP, "id": clip, "text_row": facts.text}
     row |= {column: getattr(facts, column) for column in own}
+    sample = sample_of(connection, facts.skeleton)
+    if facts.head is not None:
+        row["head"] = pack(unpack(facts.head, "head", UNPACKED, beside=sample))
+    if facts.layout is not None:
+        row["text"] = pack(unpack(facts.layout, "layout", beside=sample))
+        row["text_size"] = len(row["text"])
     row["models"] = sorted({stream.model.hex() for stream in opened.streams} - {""})
     if facts.skeleton is not None:
         row["skeleton"], row["joints"], row["skeleton_record"] = connection.execute(
