@@ -35,16 +35,20 @@ class Bands {
   Bands() {
     for (int length = kShortest; length <= kLongest; length *= 2) {
       for (int k = 1; k < length; ++k) {
-        const auto place = static_cast<std::size_t>(length + k);
+        const std::size_t place = place_of(k, length);
         coarse_[place] = static_cast<std::uint8_t>(std::min(thirds(3840 * k / length) / 2, 9));
         fine_[place] = static_cast<std::uint8_t>(std::min(thirds(7680 * k / length), 26));
       }
     }
   }
-  int coarse(int k, int length) const { return coarse_[static_cast<std::size_t>(length + k)]; }
-  int fine(int k, int length) const { return fine_[static_cast<std::size_t>(length + k)]; }
+  int coarse(int k, int length) const { return coarse_[place_of(k, length)]; }
+  int fine(int k, int length) const { return fine_[place_of(k, length)]; }
 
  private:
+  static std::size_t place_of(int k, int length) {
+    return static_cast<std::size_t>(length) + static_cast<std::size_t>(k);
+  }
+
   std::array<std::uint8_t, std::size_t{2} * kLongest> coarse_{}, fine_{};
 };
 
