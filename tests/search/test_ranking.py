@@ -1,6 +1,7 @@
 """Search by example: what is alike is found, whatever the skeleton, the rate and the length."""
 
 from collections.abc import Sequence
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -41,6 +42,20 @@ def test_the_same_motion_of_another_skeleton_and_rate_is_found_first(
         assert places(query, kept)[0] == seed
 
 
+@pytest.mark.parametrize("speed", [Fraction(2, 3), Fraction(3, 2)])
+def test_motion_at_another_speed_is_found(kept: list[Entry], speed: Fraction) -> None:
+    def played(clip: Clip) -> Entry:
+        assert clip.frame_time is not None
+        return entry(clip.with_frames(clip.values, Fraction(clip.frame_time) / speed))
+
+    for seed in range(8):
+        assert places(played(person(seed)), kept)[0] == seed
+    long = [entry(person(seed, frames=300)) for seed in range(4)]
+    hit = find(played(person(1, frames=300)[100:160]), enumerate(one.features for one in long))[0]
+    assert hit.place == 1
+    assert (hit.start * 30, hit.end * 30) == pytest.approx((100, 160), abs=8)
+
+
 def test_as_many_are_found_as_are_wanted_and_there(kept: list[Entry]) -> None:
     assert len(places(kept[0], kept, 3)) == 3
     assert sorted(places(kept[0], kept, 100)) == [*range(8)]
@@ -61,16 +76,26 @@ def test_of_equally_near_clips_those_come_first_that_have_few_others_around(
     kept: list[Entry],
 ) -> None:
     """A clip that is near to everything is near to the query for no good reason."""
-    signatures = np.zeros((26, BYTES), np.int8)
+    signatures = np.zeros((18, BYTES), np.int8)
     signatures[:12, 0] = 100
     signatures[np.arange(12), 1 + np.arange(12)] = 40
     signatures[12, 20] = 106
-    for way in (24, 37, 50):
-        signatures[13:, way : way + 13] = 120 * np.eye(13)
+    for way in (24, 34, 44):
+        signatures[13:, way : way + 5] = 120 * np.eye(5)
     query = Entry(bytes(BYTES), kept[0].features)
     hits = rank(query, [*map(bytes, signatures)], lambda _: kept[0].features)
     assert hits[0].place == 12
     assert {hit.place for hit in hits[1:13]} == {*range(12)}
+
+
+def test_copies_in_a_library_do_not_harm_each_other(kept: list[Entry]) -> None:
+    query = entry(person(5, frames=240, fps=120, style="Kinect"))
+    for copies in (2, 6):
+        assert {*places(query, [*kept, *[kept[5]] * copies, *kept])[: copies + 2]} == {
+            5,
+            13 + copies,
+            *range(8, 8 + copies),
+        }
 
 
 @pytest.mark.parametrize(
@@ -135,6 +160,7 @@ def test_a_stretch_is_found_where_it_is(start: int, end: int) -> None:
     assert hits[0].place == 1
     assert hits[0].start * 30 == pytest.approx(start, abs=4)
     assert hits[0].end * 30 == pytest.approx(end, abs=4)
+    assert hits[0].score < 0.5 * hits[1].score
     assert [hit.score for hit in hits] == sorted(hit.score for hit in hits)
 
 

@@ -222,6 +222,52 @@ def test_a_stretch_is_marked_and_found(browser: Browser, path: Path) -> None:
         visit.until("document.querySelector('#library output').textContent.includes('of cut')")
 
 
+def scores(visit: Visit) -> list[float]:
+    told = visit.page.locator(".clips small").all_inner_texts()
+    return [float(re.findall(r"score ([0-9.]+)", one)[0]) for one in told]
+
+
+def test_a_dropped_library_is_searched(browser: Browser, path: Path, samples: Path) -> None:
+    with mp.open_library(path, "a") as library:
+        library.add(samples / AMC, "copy.amc")
+        library.add(samples / "markers.c3d", "markers.c3d")
+        clips = library.search("cut")
+        stretch = slice(40, 160)
+        there = [
+            (hit.name, hit.seconds[0]) for hit in library.search("cut", frames=stretch, within=True)
+        ]
+        library.add(mp.read(samples / AMC)[:200], "damaged")
+        with library.db.writing() as connection:
+            connection.execute("UPDATE features SET rows = x'05000000aa' WHERE clip = 8")
+    with empty(browser) as visit:
+        visit.drop(path)
+        visit.until("document.querySelectorAll('.clips [role=option]').length === 7")
+        plays(visit, "cut", 800)
+        visit.page.locator("#similar").click()
+        visit.until("document.querySelector('#library output').textContent.includes('like cut')")
+        assert listed(visit) == [hit.name for hit in clips]
+        assert scores(visit) == pytest.approx([hit.score for hit in clips], abs=0.006)
+        visit.seek(40)
+        visit.page.keyboard.press("m")
+        visit.seek(159)
+        visit.page.keyboard.press("m")
+        visit.page.keyboard.press("s")
+        visit.until("document.querySelector('#library output').textContent.includes('frames 41')")
+        assert set(listed(visit)[:3]) == {"cut", f"cmu/{AMC}", "copy.amc"}
+        assert scores(visit) == sorted(scores(visit))
+        for row, name in enumerate(listed(visit)[:3]):
+            told = visit.page.locator(".clips small").nth(row).inner_text()
+            begins = [start for other, start in there if other == name]
+            assert min(abs(float(told.split()[0]) - start) for start in begins) < 0.2
+        visit.page.locator("#library output button").click()
+        for name in ("markers.c3d", "damaged"):
+            visit.page.locator(".clips button", has_text=name).click()
+            visit.until("document.body.dataset.frame >= 0")
+            visit.page.keyboard.press("s")
+            visit.until(f"document.querySelector('.notice')?.textContent.includes('{name}')")
+            visit.page.locator(".notice button").click()
+
+
 def test_a_clip_without_a_body_is_told_of(browser: Browser, path: Path, samples: Path) -> None:
     with mp.open_library(path, "a") as library:
         library.add(samples / "markers.c3d")

@@ -24,6 +24,8 @@ _AROUND = 30
 """The nearest other candidates, whose mean distance says how crowded it is around a clip."""
 _CROWDED = 0.35
 """Power of that distance by which scores are divided."""
+_FEW, _LEAST_SPREAD = 5, 0.7
+"""Fewer do not say it; and the least part of the median of these distances that counts."""
 _SIGNED, _ALIGNED = 55.0, 1.9
 """Distances of signatures and of alignments that count 1: the former is how they spread over the
 candidates for a query, the latter ten times that. So scores of different queries can be compared.
@@ -38,6 +40,9 @@ _CLEAR = 0.73
 """Part of the usual cost, the median over all frames, below which a stretch is an example."""
 _OWN = 0.3
 """Weight of the query itself beside the mean of examples."""
+_MOST_TIMES = 4.0
+"""How many times the cost of aligning a stretch with the query its score is at most, so that the
+score of a copy is near 0."""
 _SIGNED_STRETCH = 1100.0
 """Distance of signatures that counts as much as a cost of 1."""
 _NONE = np.empty(0, np.float32)
@@ -160,7 +165,9 @@ def find(query: Entry, features: Iterable[tuple[int, bytes]], top: int = 20) -> 
             costs[number] = _OWN * costs[number] + (1 - _OWN) * np.mean(others, axis=0)
     again = [(own, starts) for own, (_, starts) in zip(costs, matches, strict=True)]
     hits = _stretches(again, max(CLOSELY, top))
-    scores = _scores(wanted, records, hits)
+    own = np.array([matches[hit.record][0][hit.last] for hit in hits])
+    judged = _scores(wanted, records, hits)
+    scores = np.minimum(judged, _MOST_TIMES * own)
     order = np.argsort(scores, kind="stable")[:top]
     seconds = EVERY / RATE
     return [
@@ -222,10 +229,11 @@ def _scores(wanted: Features, records: Sequence[tuple[int, bytes]], hits: list[_
             read[hit.record] = read_record(records[hit.record][1])
         made[number] = projected(read[hit.record][hit.first : hit.last + 1].astype(np.float64))
     own = np.linalg.norm(made - projected(wanted.astype(np.float64)), axis=1)
-    scores = np.array([hit.cost for hit in hits]) + own / _SIGNED_STRETCH
+    apart = np.array([np.linalg.norm(made - one, axis=1) for one in made])
+    crowded = _spread(apart / _SIGNED) ** _CROWDED
+    scores = (np.array([hit.cost for hit in hits]) + own / _SIGNED_STRETCH) / crowded
     best = np.argsort(scores, kind="stable")[:_EXAMPLES]
-    theirs = [np.linalg.norm(made - made[i], axis=1) for i in best]
-    added: Array = scores + np.mean(theirs, axis=0) / _SIGNED_STRETCH
+    added: Array = scores + apart[best].mean(axis=0) / _SIGNED_STRETCH / crowded
     return added
 
 
@@ -248,12 +256,15 @@ def _apart(costs: Features, starts: NDArray[np.int32], top: int) -> list[tuple[i
 
 
 def _spread(apart: Array) -> Array:
-    """Give for each clip how far the nearest others are on average, of distances (N, N)."""
+    """Give for each clip how far the nearest others are on average, of distances (N, N).
+
+    No less than a part of the median, so that copies of a clip hardly harm each other.
+    """
     most = min(_AROUND, len(apart) // 3)
-    if not most:
+    if most < _FEW:
         return np.ones(len(apart))
     spread: Array = np.sort(apart, axis=1)[:, 1 : most + 1].mean(axis=1)
-    return np.maximum(spread, 1 / _SIGNED)
+    return np.maximum(spread, max(_LEAST_SPREAD * float(np.median(spread)), 1 / _SIGNED))
 
 
 def _alignments(wanted: Features, others: Sequence[Features]) -> Array:

@@ -37,4 +37,9 @@ export class DroppedLibrary {
   read({ id, name }, begun) {
     return this.reader.stored(id, name, begun);
   }
+
+  /** As of `ServedLibrary`; stretches are ranked by alignment alone. */
+  similar({ id, name }, stretch) {
+    return this.reader.similar(id, name, stretch);
+  }
 }

@@ -2,6 +2,8 @@
 import { decodeStream, mczOfParts } from "../../mcz/mcz.js";
 import { FileError } from "./file_error.js";
 import { readOpened } from "./mcz.js";
+import { find, rank } from "./search_ranking.js";
+import { NOTHING, RATE, part, readRecord } from "./search_record.js";
 
 const APPLICATION_ID = 0x4d435a4c;
 const VERSION = 5;
@@ -22,11 +24,20 @@ const RUNS = `
   SELECT stream, first, frames, source, source_first AS sourceFirst FROM runs WHERE clip = ?
   ORDER BY stream, first`;
 
+const INDEX = 1; // version of what is compared in a search
+const ASSUMED_RATE = 120; // of a clip that states none
+const SIGNATURES = `
+  SELECT clip, signature, frames, coalesce(frame_time, 1.0 / ${ASSUMED_RATE}) AS frameTime
+  FROM signatures JOIN clips ON clips.id = clip
+  WHERE version = ${INDEX} AND length(signature) = 64 ORDER BY clip`;
+
+const FEATURES = "SELECT rows FROM features WHERE clip = ?";
 const NEEDS = "SELECT EXISTS (SELECT 1 FROM needs WHERE clip = ?)";
 
 /** A library in memory; it is only read. */
 export class SqliteLibrary {
   #hasNeeds = false;
+  #hasIndex = false;
   #clip = "";
 
   /**
@@ -72,6 +83,7 @@ export class SqliteLibrary {
     if (missing) throw new FileError("not the tables of a library", { expected: missing });
     this.#clip = clipOf(version < 5 ? "NULL AS sample, NULL AS layout" : "sample, layout");
     this.#hasNeeds = tables.includes("needs"); // from version 2 on
+    this.#hasIndex = ["signatures", "features"].every((name) => tables.includes(name)); // from 3 on
   }
 
   /** @returns {import("../panels/library.js").StoredClip[]} */
@@ -99,6 +111,49 @@ export class SqliteLibrary {
       clip.mcz.decode = (stream) => this.#decode({ ...clip.mcz, own }, stream, id, models);
     }
     return { ...(await readOpened(clip.mcz, models, null, this.assets, early)), name: clip.name };
+  }
+
+  /**
+   * Find what is like a clip, or like a stretch of it.
+   *
+   * @param {number} id
+   * @param {[number, number]|null} stretch the first frame, and the one behind the last
+   * @returns {Promise<import("../panels/library.js").Hit[]>}
+   * @throws {FileError} where the library has no index of the clip
+   */
+  async similar(id, stretch) {
+    const rows = this.#hasIndex ? this.#said(() => this.db.selectObjects(SIGNATURES)) : [];
+    const query = rows.findIndex(({ clip }) => clip === id);
+    if (query < 0) {
+      throw new FileError("has no index for search; 'mocapress library reindex' makes it", {
+        file: this.#said(() => this.db.selectValue("SELECT name FROM clips WHERE id = ?", [id])),
+      });
+    }
+    const record = (place) => {
+      const asked = [rows[place].clip];
+      return readRecord(this.#said(() => this.db.selectValue(FEATURES, asked)) ?? new Uint8Array());
+    };
+    const own = await record(query);
+    const features = (place) => record(place).catch(() => NOTHING); // a damaged one is not found
+    if (!stretch) {
+      const signatures = rows.map(({ signature }) => new Int8Array(signature));
+      const hits = await rank(query, signatures, features);
+      return hits.map(({ place, score }) => {
+        const { clip, frames, frameTime } = rows[place];
+        return { id: clip, start: 0, seconds: [0, frames * frameTime], score };
+      });
+    }
+    const [first, last] = stretch.map((frame) => frame * rows[query].frameTime * RATE);
+    const begin = Math.min(Math.round(first), own.frames - 1);
+    const end = Math.min(Math.max(Math.round(last), begin + 1), own.frames);
+    async function* all() {
+      for (const place of rows.keys()) yield [place, await features(place)];
+    }
+    return (await find(part(own, begin, end), all())).map(({ place, score, ...found }) => {
+      const { clip, frames, frameTime } = rows[place];
+      const seconds = [found.first / RATE, Math.min(found.last / RATE, frames * frameTime)];
+      return { id: clip, start: Math.round(seconds[0] / frameTime), seconds, score };
+    });
   }
 
   async #open(id) {

@@ -21,7 +21,7 @@ export class Reader {
       }
     });
     worker.addEventListener("error", ({ message }) => {
-      const read = { clips: [], errors: [`This page cannot read files in this browser (${message}).`] };
+      const read = { clips: [], hits: [], errors: [`This page cannot read files in this browser (${message}).`] };
       for (const { done } of this.#waiting.values()) done(read);
       this.#waiting.clear();
     });
@@ -57,6 +57,16 @@ export class Reader {
    */
   stored(stored, name, begun) {
     return this.#ask({ stored, name }, begun, []);
+  }
+
+  /**
+   * @param {number} similar id of a clip of the library
+   * @param {string} name for messages
+   * @param {[number, number]|null} stretch of the clip
+   * @returns {Promise<{hits: import("../panels/library.js").Hit[], errors: string[]}>}
+   */
+  similar(similar, name, stretch) {
+    return this.#ask({ similar, name, stretch }, () => {}, []);
   }
 
   /**

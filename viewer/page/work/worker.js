@@ -26,12 +26,17 @@ export function begin(carried) {
  * Read files or what the page carries; of long clips first only the beginning, which is told early.
  *
  * @param {{id: number, files?: {name: string, bytes: Uint8Array}[], text?: string, library?: Object,
- *     stored?: number, name?: string}} question of ./reader.js
+ *     stored?: number, similar?: number, stretch?: [number, number], name?: string}} question of
+ *     ./reader.js
  */
 export async function answer({ id, ...question }) {
   const { files, text, stored, name } = question;
   if (question.library) {
     postMessage({ id, early: false, read: await opened(question.library) });
+    return;
+  }
+  if (question.similar) {
+    postMessage({ id, early: false, read: await similar(question) });
     return;
   }
   const read = (early) => {
@@ -56,6 +61,14 @@ async function opened({ file, code, wasm }) {
     return { clips: [], errors: [messageOf(error, file.name)] };
   } finally {
     URL.revokeObjectURL(url);
+  }
+}
+
+async function similar({ similar: id, name, stretch }) {
+  try {
+    return { hits: await library.similar(id, stretch), errors: [] };
+  } catch (error) {
+    return { hits: [], errors: [messageOf(error, name)] };
   }
 }
 
