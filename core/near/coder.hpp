@@ -144,23 +144,33 @@ class Coder : public Models {
     return most;
   }
 
+  // By how much of 256 the usual magnitude of a band moves to that of so many sines.
+  static int rate_of(int count) {
+    static const auto kRates = [] {
+      std::array<std::uint8_t, kLongest> made{};
+      for (int n = 0; n < kLongest; ++n) {
+        int rate = 0;
+        while (rate < 128 && (rate + 1) * (rate + 1) <= 838 * n) ++rate;
+        made[static_cast<std::size_t>(n)] = static_cast<std::uint8_t>(rate);
+      }
+      return made;
+    }();
+    return kRates[static_cast<std::size_t>(count)];
+  }
+
   // Moves the usual magnitudes of the bands towards those of a block.
   static void remember(std::array<int, kSpectrum>& usual, const Block& block) {
-    int band = fine_band(1, block.length), sum = 0, count = 0;
-    for (int k = 1; k <= block.length; ++k) {
-      const int next = k < block.length ? fine_band(k, block.length) : kSpectrum;
-      if (next != band) {
-        int rate = 0;
-        while (rate < 128 && (rate + 1) * (rate + 1) <= 838 * count) ++rate;
-        int& value = usual[static_cast<std::size_t>(band)];
-        value += ((256 * sum / count - value) * rate) >> 8;
-        band = next;
-        sum = count = 0;
+    const int end = end_of(block.of_class, block.length);
+    int k = 1;
+    while (k < block.length) {
+      const int band = bands().fine(k, block.length), first = k;
+      int sum = 0;
+      for (; k < block.length && bands().fine(k, block.length) == band; ++k) {
+        if (k <= end) sum += magnitude_at(&block, k);
       }
-      if (k < block.length) {
-        sum += magnitude_at(&block, k);
-        ++count;
-      }
+      const int count = k - first;
+      int& value = usual[static_cast<std::size_t>(band)];
+      value += ((256 * sum / count - value) * rate_of(count)) >> 8;
     }
   }
 };

@@ -29,9 +29,33 @@ inline int thirds(int x) {
 inline int level(int x, int count) { return std::min(halves(x), count - 1); }
 inline int octave(int length) { return static_cast<int>(std::bit_width(unsigned(length))) - 1; }
 
-// Bands of a sine k of a block, coarse and fine.
-inline int coarse_band(int k, int length) { return std::min(thirds(3840 * k / length) / 2, 9); }
-inline int fine_band(int k, int length) { return std::min(thirds(7680 * k / length), 26); }
+// Bands of the sines of blocks of every length, coarse and fine.
+class Bands {
+ public:
+  Bands() {
+    for (int length = kShortest; length <= kLongest; length *= 2) {
+      for (int k = 1; k < length; ++k) {
+        const std::size_t place = place_of(k, length);
+        coarse_[place] = static_cast<std::uint8_t>(std::min(thirds(3840 * k / length) / 2, 9));
+        fine_[place] = static_cast<std::uint8_t>(std::min(thirds(7680 * k / length), 26));
+      }
+    }
+  }
+  int coarse(int k, int length) const { return coarse_[place_of(k, length)]; }
+  int fine(int k, int length) const { return fine_[place_of(k, length)]; }
+
+ private:
+  static std::size_t place_of(int k, int length) {
+    return static_cast<std::size_t>(length) + static_cast<std::size_t>(k);
+  }
+
+  std::array<std::uint8_t, std::size_t{2} * kLongest> coarse_{}, fine_{};
+};
+
+inline const Bands& bands() {
+  static const Bands kBands;
+  return kBands;
+}
 
 // What a block is coded beside: the channel's block before it, and those of the three moving
 // channels before it that are there in its middle, of the first also at its start and its end.
@@ -131,8 +155,8 @@ inline Context number_context(const Around& around, const Block& block, int k) {
                      seen(two, k, n) + seen(three, k, n);
   const int further =
       2 * (seen(two, k, n) + seen(three, k, n)) + seen(two, k + 1, n) + seen(three, k + 1, n);
-  const int usual = (*around.usual)[static_cast<std::size_t>(fine_band(k, n))] / 4;
-  const int band = coarse_band(k, n);
+  const int usual = (*around.usual)[static_cast<std::size_t>(bands().fine(k, n))] / 4;
+  const int band = bands().coarse(k, n);
   const int all = (19 * near + 11 * before + 8 * beside) >> 4;
   const int whole = (13 * near + 8 * before + 5 * beside + 3 * further + 13 * usual) >> 4;
   const int left = end_of(block.of_class, n) - k;

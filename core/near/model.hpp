@@ -79,20 +79,17 @@ struct Counter {
 // How much the chances of a counter move that has seen so much, the fast one's above.
 class Rates {
  public:
-  Rates() {
+  constexpr Rates() {
     const auto rate = [](std::uint32_t count) { return 655360 / (10 * count + 16); };
     for (std::uint32_t n = 0; n < 256; ++n) rates_[n] = rate(n) | rate(std::min(n, 18U)) << 16;
   }
   std::int32_t of(std::uint32_t count) const { return static_cast<std::int32_t>(rates_[count]); }
 
  private:
-  std::array<std::uint32_t, 256> rates_;
+  std::array<std::uint32_t, 256> rates_{};
 };
 
-inline const Rates& rates() {
-  static const Rates kRates;
-  return kRates;
-}
+inline constexpr Rates kRates;
 
 // The weights of eight slow chances, then of the fast ones.
 struct Mixer {
@@ -109,6 +106,7 @@ class Model {
   struct Place {
     std::array<Counter*, kContexts> counters;
     Mixer *first, *second;
+    const Logistic* tables;
   };
 
   Model(std::size_t decisions, const std::array<std::size_t, kContexts>& sizes,
@@ -141,6 +139,7 @@ class Model {
     }
     place.first = &first_[static_cast<std::size_t>(context.first_set) * decisions_];
     place.second = &second_[static_cast<std::size_t>(context.second_set) * decisions_];
+    place.tables = &logistic();
     return place;
   }
 
@@ -194,7 +193,7 @@ class Mixing {
   }
 
   MOCAPRESS_IN_PLACE static Inputs inputs_of(const Model::Place& place, std::size_t decision) {
-    const Logistic& tables = logistic();
+    const Logistic& tables = *place.tables;
     Inputs inputs;
     for (std::size_t v = 0; v < kVectors / 2; ++v) {
       const auto own = [&](std::size_t i) -> const Counter& {
@@ -217,16 +216,18 @@ class Mixing {
     for (std::size_t i = 0; i < kVectors; ++i) {
       sums += load(mixer.weights.data() + i * kWidth) * inputs[i];
     }
-    std::int32_t sum = 0;
-    for (std::size_t i = 0; i < kWidth; ++i) sum += sums[i];
-    return sum >> 16;
+    std::array<Narrow, kWidth / 4> parts;
+    std::memcpy(parts.data(), &sums, sizeof sums);
+    Narrow four = parts[0];
+    if constexpr (kWidth > 4) four += parts[1];
+    return ((four[0] + four[1]) + (four[2] + four[3])) >> 16;
   }
 
   MOCAPRESS_IN_PLACE static int mixed(const Model::Place& place, std::size_t decision,
                                       const Inputs& inputs) {
     const int first = mixed(place.first[decision], inputs);
     const int second = mixed(place.second[decision], inputs);
-    return logistic().chance((first + second) >> 1);
+    return place.tables->chance((first + second) >> 1);
   }
 
   MOCAPRESS_IN_PLACE static void learn(Mixer& mixer, const Inputs& moves) {
@@ -245,18 +246,17 @@ class Mixing {
   // chances of a half, so that all products are below 2^31.
   MOCAPRESS_IN_PLACE static void learn(Counter* const* counters, std::size_t decision,
                                        std::int32_t target) {
-    const Rates& tables = rates();
     const auto own = [&](std::size_t i) -> Counter& { return counters[i][decision]; };
     const Vector both =
         vector([&](std::size_t i) { return static_cast<std::int32_t>(own(i).chances); });
-    const Vector moves = vector([&](std::size_t i) { return tables.of(own(i).count); });
+    const Vector moves = vector([&](std::size_t i) { return kRates.of(own(i).count); });
     const Vector slow = both & 0xffff, fast = (both >> 16) & 0xffff;
     const Vector slower = slow + ((target - slow) * (moves & 0xffff) >> 16);
     const Vector faster = fast + ((target - fast) * ((moves >> 16) & 0xffff) >> 16);
     const Vector moved = within(slower, 16, 65519) | within(faster, 64, 65471) << 16;
     for (std::size_t i = 0; i < kWidth; ++i) {
       own(i).chances = static_cast<std::uint32_t>(moved[i]);
-      own(i).count += own(i).count < 255 ? 1 : 0;
+      own(i).count = std::min(own(i).count + 1, 255U);
     }
   }
 };
