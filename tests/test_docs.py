@@ -131,6 +131,7 @@ def clips(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "clips").mkdir()
     shutil.copy(ROOT / "samples/freebvh.bvh", tmp_path / "clips/run.bvh")
     shutil.copy(ROOT / "samples/mocapbank.bvh", tmp_path / "walk.bvh")
+    shutil.copy(ROOT / "samples/markers.c3d", tmp_path / "walk.c3d")
     shutil.copy(ROOT / "samples/cmu_01_01.asf", tmp_path / "walk.asf")
     lines = (ROOT / "samples/cmu_01_01.amc").read_text().splitlines(keepends=True)
     (tmp_path / "walk.amc").write_text("".join(lines[: lines.index("701\n")]))  # for speed
