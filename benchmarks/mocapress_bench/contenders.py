@@ -23,7 +23,7 @@ from mocapress_bench.dct import Dct
 from mocapress_bench.rivals import Rival
 
 T = TypeVar("T")
-_LEVELS = (1, 6, 9)
+_LEVELS = (1, 5, 9)
 _COMMA = re.compile(r",(?!\s*(?:\w+=|limit ))")
 """Between names, not inside of ``app:t=10,table=k2-uniform`` and ``MPEG-4 LP, limit 53``."""
 Transform = Callable[[bytes], bytes]

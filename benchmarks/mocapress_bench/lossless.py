@@ -142,7 +142,7 @@ def _codec_row(
         ),
         repeat,
     )
-    kept = smallest(source, parts, None if unfit(parts, len(data)) else blob)
+    kept = smallest(source, parts, None if unfit(parts, len(data)) else blob, codec)
     (layout, chunks, head), open_s = _best(lambda: _open(blob), repeat)
     values, decode_s = _best(
         lambda: codec.decode(head.header, chunks, head.columns, model=model), repeat

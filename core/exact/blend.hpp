@@ -25,6 +25,17 @@ class Blends {
   // Of the predictions, only those from <= i < to make up the mean, which is trusted at first.
   double predict(std::size_t channel, std::span<const double> predictions, std::size_t from,
                  std::size_t to);
+  // The same of two predictors and one memory.
+  double predict_pair(std::size_t channel, double one, double other) {
+    Memory& memory = memories_[0];
+    const double mean = (one + other) * 0.5;
+    const double apart = other - mean;
+    means_[channel] = mean;
+    memory.chains.see(channel, 0, apart);
+    const Block* weight = memory.chains.column(channel / kLanes, 0);
+    memory.guesses[channel] = reinterpret_cast<const double*>(weight)[channel % kLanes] * apart;
+    return mean + memory.guesses[channel];
+  }
   // `scale`: how far off the value was to be expected.
   void see(std::size_t channel, double value, double scale) {
     values_[channel] = value;

@@ -34,6 +34,10 @@ class Frames {
     moves_[channel] = move;
     bends_[channel] = move - (rows_[1][channel] - rows_[2][channel]);
   }
+  // All frames before are taken to have been like this one.
+  void fill() {
+    for (std::size_t age = 1; age < kKept; ++age) rows_[age] = rows_[0];
+  }
   // A second difference that this frame is guessed to have.
   void set_guess(std::size_t channel, double difference) { guesses_[channel] = difference; }
   double guess(std::size_t channel) const { return guesses_[channel]; }

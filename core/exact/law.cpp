@@ -13,8 +13,8 @@ namespace {
 constexpr int kMostSteps = 12;   // of the fixed point for y3
 constexpr int kMiddleSteps = 8;  // of the fixed point for y of the second joint
 constexpr double kFlattest = 0.1;
-constexpr double kTurned = 1e-4;   // degrees; the same there
-constexpr double kSettled = 1e-8;  // a step below it is the last
+constexpr double kTurned = 1e-3;   // degrees; the same there
+constexpr double kSettled = 1e-6;  // a step below it is the last
 constexpr double kRight = 1e-3;    // degrees; a branch that is further off is the wrong one
 
 Vector unit(const Vector& a) {
@@ -81,13 +81,12 @@ constexpr std::array<Term, 35> kTerms = make_terms();
 
 MOCAPRESS_IN_PLACE Shares shares(const Branch& branch, const Vector& bends) {
   std::array<double, 35> terms;
-  terms[0] = 1;
-  Shares sum = {branch.near[0], branch.root[0]};
-  for (std::size_t i = 1; i < terms.size(); ++i) {
-    terms[i] = terms[kTerms[i].of] * bends[kTerms[i].times];
-    sum += Shares{branch.near[i], branch.root[i]} * terms[i];
+  std::array<Shares, 4> sums{};  // none waits for another
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    terms[i] = i == 0 ? 1 : terms[kTerms[i].of] * bends[kTerms[i].times];
+    sums[i % sums.size()] += Shares{branch.near[i], branch.root[i]} * terms[i];
   }
-  return sum;
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
 // The value of a polynomial of degree 1.
@@ -172,10 +171,10 @@ void Law::begin_middle(const double* sources) {
       for (std::size_t k = 0; k < 3; ++k) term *= k < i ? turn : off_plane;
       told += term;
     }
-    // A secant, whose slope is that of the twist alone, -1, to begin with.
+    // A secant, whose slope is at first that of the frame before.
     const double off = (told - twist(kIdentity, local)) / kRadiansPerDegree;
-    const double slope = step == 0 ? -1 : (off - last_off) / moved;
-    moved = slope < -kFlattest ? -off / slope : off;
+    if (step > 0) slope_ = (off - last_off) / moved;
+    moved = slope_ < -kFlattest ? -off / slope_ : off;
     last_off = off;
     first_ = std::clamp(first_ + moved, -90.0, 90.0);
     if (!(std::fabs(moved) > kTurned)) break;

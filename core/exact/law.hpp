@@ -50,8 +50,9 @@ class Law {
   void choose_branch(double seen, double cosine_y);
 
   LawKind kind_;
-  Vector axis_{};     // where the last joint's y axis points, seen by the joint before
-  double first_ = 0;  // the first target
+  Vector axis_{};      // where the last joint's y axis points, seen by the joint before
+  double first_ = 0;   // the first target
+  double slope_ = -1;  // of what a middle's law is off; at first that of the twist alone
   double thumb_turn_ = 0;
   Matrix second_{};  // the axes of the joint before the last
   Vector y1_{};      // the y axis of the first one

@@ -18,15 +18,18 @@ double nearest_turn(double angle, double to) {
 
 Lawful::Lawful(const Coupling& coupling, std::span<const Column> columns)
     : coupling_(coupling), law_(static_cast<LawKind>(coupling.kind)) {
-  for (const Column& column : columns) units_.push_back(std::ldexp(1.0, column.exponent));
+  for (const Column& column : columns) {
+    units_.push_back({std::ldexp(1.0, column.exponent), std::ldexp(1.0, -column.exponent)});
+  }
   if (coupling.kind == Joint::kKind) joint_.emplace(coupling.sources.size(), coupling.parameters);
 }
 
-void Lawful::predict(std::size_t channel, const Frames& frames, double* moves) {
+void Lawful::predict(std::size_t channel, const double* levels, const double* last, double* moves) {
   const auto found = std::ranges::find(coupling_.targets, channel);
   const auto target = static_cast<std::size_t>(found - coupling_.targets.begin());
-  const double before = frames.level(channel, 1);
-  const double now = sane(told(target, frames, before / units_[channel]) * units_[channel]);
+  const double before = last[channel];
+  const double now =
+      sane(told(target, levels, before * units_[channel].per_level) * units_[channel].level);
   moves[0] = now - before;
   const double missed = seen_ > 0 ? before - told_[target] : 0;
   moves[1] = moves[0] + missed;
@@ -37,14 +40,14 @@ void Lawful::predict(std::size_t channel, const Frames& frames, double* moves) {
 }
 
 // A target in degrees.
-double Lawful::told(std::size_t target, const Frames& frames, double before) {
+double Lawful::told(std::size_t target, const double* levels, double before) {
   std::array<double, kLawSources> sources{};
   if (target == 0) {
     for (std::size_t i = 0; i < coupling_.sources.size(); ++i) {
-      sources[i] = std::clamp(degrees(coupling_.sources[i], frames), -kFarthest, kFarthest);
+      sources[i] = std::clamp(degrees(coupling_.sources[i], levels), -kFarthest, kFarthest);
     }
   } else {
-    known_[target - 1] = degrees(coupling_.targets[target - 1], frames);
+    known_[target - 1] = degrees(coupling_.targets[target - 1], levels);
   }
   if (joint_) {
     const auto [one, other, looseness] = joint_->angles(sources.data(), before);

@@ -27,16 +27,22 @@ class Lawful {
 
   // Moves of a target since the last frame, where the law is off by nothing, by as much as in the
   // last frame, and by what continues the last two. The columns before the target are known.
-  void predict(std::size_t channel, const Frames& frames, double* moves);
+  // `levels` are those of this frame and of the last one, by channels.
+  void predict(std::size_t channel, const double* levels, const double* last, double* moves);
 
  private:
-  double told(std::size_t target, const Frames& frames, double before);
-  double degrees(std::size_t channel, const Frames& frames) const {
-    return frames.level(channel, 0) / units_[channel];
+  double told(std::size_t target, const double* levels, double before);
+  double degrees(std::size_t channel, const double* levels) const {
+    return levels[channel] * units_[channel].per_level;
   }
 
   Coupling coupling_;
-  std::vector<double> units_;
+  struct Unit {
+    double level;      // from degrees to levels
+    double per_level;  // and back
+  };
+
+  std::vector<Unit> units_;
   Law law_;
   std::optional<Joint> joint_;
   std::array<double, kLawTargets> known_{};

@@ -16,10 +16,9 @@ void see_shared(double value, const Block* column, Block* predictions, std::size
 
 // How much the frame counts for each of eight limbs, from its channels' innovations.
 MOCAPRESS_VECTOR_CLONES
-void weigh(const Block* innovations, Block* usual, const Block* targets, std::size_t block,
-           Block* weights) {
+void weigh(const Block* innovations, Block* usual, const Block* targets, Block* weights) {
   Block sum{};
-  for (std::size_t i = 0; i < block; ++i) {
+  for (std::size_t i = 0; i < kLimb; ++i) {
     sum += unusualness(innovations[i] * innovations[i], usual[i]);
   }
   for (std::size_t i = 0; i < kLanes; ++i) {
@@ -27,24 +26,22 @@ void weigh(const Block* innovations, Block* usual, const Block* targets, std::si
   }
 }
 
-std::size_t count_limbs(std::size_t channels, std::size_t block) {
-  return (channels + block - 1) / block;
-}
+std::size_t count_limbs(std::size_t channels) { return (channels + kLimb - 1) / kLimb; }
 
 }  // namespace
 
 Limbs::Limbs(const LimbsPlan& plan, std::size_t channels)
     : plan_(plan),
       channels_(channels),
-      most_(known_before(count_limbs(channels, plan.block) - 1) + plan.block),
-      chains_(count_limbs(channels, plan.block), most_, plan.fading, kChainRidge),
-      targets_(count_limbs(channels, plan.block), static_cast<double>(plan.block)),
-      weights_(count_limbs(channels, plan.block), 0) {
+      most_(known_before(count_limbs(channels) - 1) + kLimb),
+      chains_(count_limbs(channels), most_, plan.fading, kChainRidge),
+      targets_(count_limbs(channels), static_cast<double>(kLimb)),
+      weights_(count_limbs(channels), 0) {
   predictions_.resize(weights_.count_blocks() * most_);
-  innovations_.resize(weights_.count_blocks() * plan.block);
+  innovations_.resize(weights_.count_blocks() * kLimb);
   usual_.assign(innovations_.size(), kChainRidge + Block{});
-  if (channels % plan.block != 0) {
-    targets_[channels / plan.block] = static_cast<double>(channels % plan.block);
+  if (channels % kLimb != 0) {
+    targets_[channels / kLimb] = static_cast<double>(channels % kLimb);
   }
 }
 
@@ -71,7 +68,7 @@ double Limbs::see(std::size_t variable, double value) {
 void Limbs::see_target(std::size_t channel, const Frames& frames) {
   const std::size_t own = channel - first_;
   const std::size_t block = limb_ / kLanes;
-  reinterpret_cast<double*>(&innovations_[block * plan_.block + own])[limb_ % kLanes] =
+  reinterpret_cast<double*>(&innovations_[block * kLimb + own])[limb_ % kLanes] =
       see(known_ + own, value(channel, frames));
 }
 
@@ -79,7 +76,7 @@ void Limbs::see_target(std::size_t channel, const Frames& frames) {
 void Limbs::see_root(const Frames& frames) {
   for (std::size_t block = 0; block < weights_.count_blocks(); ++block) {
     Block* predictions = predictions_.data() + block * most_;
-    for (std::size_t i = 0; i < plan_.root; ++i) {
+    for (std::size_t i = 0; i < kLimb; ++i) {
       const double shared = value(i, frames);
       chains_.values(block)[i] = shared + Block{};
       see_shared(shared, chains_.column(block, i), predictions + i, most_ - i - 1);
@@ -91,17 +88,17 @@ void Limbs::enter(std::size_t limb, const Frames& frames) {
   const std::size_t last = first_;
   if (limb == 1) see_root(frames);
   limb_ = limb;
-  first_ = limb * plan_.block;
+  first_ = limb * kLimb;
   known_ = known_before(limb);
-  if (limb == 1 && plan_.root > 0) return;
-  for (std::size_t i = 0; i < plan_.block; ++i) {
-    see(known_ - plan_.block + i, value(last + i, frames));
+  if (limb == 1) return;
+  for (std::size_t i = 0; i < kLimb; ++i) {
+    see(known_ - kLimb + i, value(last + i, frames));
   }
 }
 
 double Limbs::predict(std::size_t channel, const Frames& frames) {
   if (channel > 0) see_target(channel - 1, frames);
-  if (channel == first_ + plan_.block) enter(limb_ + 1, frames);
+  if (channel == first_ + kLimb) enter(limb_ + 1, frames);
   const std::size_t variable = known_ + channel - first_;
   const Block* told = predictions_.data() + limb_ / kLanes * most_ + variable;
   const double before = frames.level(channel, 1);
@@ -112,8 +109,8 @@ double Limbs::predict(std::size_t channel, const Frames& frames) {
 void Limbs::learn(const Frames& frames) {
   see_target(channels_ - 1, frames);
   for (std::size_t block = 0; block < weights_.count_blocks(); ++block) {
-    const std::size_t first = block * plan_.block;
-    weigh(innovations_.data() + first, usual_.data() + first, &targets_.block(block), plan_.block,
+    const std::size_t first = block * kLimb;
+    weigh(innovations_.data() + first, usual_.data() + first, &targets_.block(block),
           &weights_.block(block));
   }
   chains_.learn(weights_.blocks());

@@ -15,9 +15,9 @@ struct LimbsPlan {
   std::size_t slot;
   int order;  // of the differences that are the chains' variables
   double fading;
-  std::size_t block;  // channels of a limb
-  std::size_t root;   // channels that belong to each limb: none, or the first limb's
 };
+
+inline constexpr std::size_t kLimb = 6;  // channels
 
 class Limbs {
  public:
@@ -36,7 +36,7 @@ class Limbs {
     return plan_.order == 1 ? frames.move(channel) : frames.bend(channel);
   }
   std::size_t known_before(std::size_t limb) const {
-    return limb == 0 ? 0 : limb == 1 ? plan_.block : plan_.root + plan_.block;
+    return limb == 0 ? 0 : limb == 1 ? kLimb : 2 * kLimb;
   }
   double see(std::size_t variable, double value);
   void see_target(std::size_t channel, const Frames& frames);

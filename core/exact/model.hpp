@@ -38,7 +38,7 @@ inline constexpr double kFarthest = 20;         // in scales: an error beyond co
 inline constexpr double kRounding = 0.15;       // in steps: what rounding adds to the scale
 inline constexpr std::uint32_t kNoCut = 65512;  // its chance, in 1/65536
 // The first levels that have them.
-inline constexpr int kLastStageFrom = 5, kNetworkFrom = 7, kMemoriesFrom = 9;
+inline constexpr int kNetworkFrom = 7, kMemoriesFrom = 9;
 
 class Model {
  public:
@@ -55,8 +55,6 @@ class Model {
     Plans plan = plans(known, clip.couplings, clip.level);
     for (auto& expert : plan.experts) experts_.emplace_back(std::move(expert), count_);
     for (const auto& limbs : plan.limbs) limbs_.emplace_back(limbs, count_);
-    has_own_ = std::ranges::any_of(
-        plan.order, [](Predictor some) { return some.kind == Predictor::Kind::own; });
     for (std::size_t c = 0; c < count_; ++c) {
       const NumberLine line(columns[c].line, columns[c].digits);
       std::vector<Predictor> predictors;
@@ -75,7 +73,7 @@ class Model {
       laws_.push_back(std::make_unique<Lawful>(coupling, columns));
       for (const auto target : coupling.targets) channels_[target].law = laws_.back().get();
     }
-    if (clip.level >= kLastStageFrom) last_.emplace(count_, slots());
+    last_.emplace(count_, slots());
     if (clip.level >= kNetworkFrom) network_.emplace(count_);
     gather_blends(clip.level >= kMemoriesFrom ? Blends::kMostMemories : 1);
     // Longer chains come first, so that those that learn together are of one length.
@@ -110,9 +108,9 @@ class Model {
     if (first_ || side.chance(kNoCut, cut)) return code_first_frame(side, row);
     for (auto& expert : experts_) expert.begin();
     for (auto& limbs : limbs_) limbs.begin();
-    if (has_own_) own_.begin(frames_);
+    own_.begin(frames_);
     spreads_.begin();
-    if (last_) last_->begin();
+    last_->begin();
     if (network_) network_->begin();
     if (kinematics_) kinematics_->begin(frames_);
     for (std::size_t c = 0; c < count_; ++c) row[c] = code_number(side, c, row[c]);
@@ -120,9 +118,9 @@ class Model {
     for (auto* expert : learners_) weights_.push_back(expert->weigh(frames_));
     Chain::learn_all(chains_, weights_);
     for (auto& limbs : limbs_) limbs.learn(frames_);
-    if (has_own_) own_.learn(frames_);
+    own_.learn(frames_);
     for (auto& blends : blends_) blends.learn();
-    if (last_) last_->learn();
+    last_->learn();
     spreads_.learn();
   }
 
@@ -240,7 +238,10 @@ class Model {
     if (kinematics_) frames_.set_guess(c, sane(kinematics_->guess(c, frames_)));
     const std::size_t count = channel.predictors.size();
     for (std::size_t i = 0; i < count; ++i) predictions_[i] = move(channel.predictors[i], c);
-    if (channel.law != nullptr) channel.law->predict(c, frames_, predictions_.data() + count);
+    if (channel.law != nullptr) {
+      channel.law->predict(c, frames_.row(0).data(), frames_.row(1).data(),
+                           predictions_.data() + count);
+    }
     double blended = channel.blends->predict(channel.blend, predictions_, channel.from, channel.to);
     const bool unsure = channel.law != nullptr && !channel.law->sure();
     if (unsure) {
@@ -290,7 +291,7 @@ class Model {
     const Channel& channel = channels_[c];
     const bool sure = channel.law != nullptr && channel.law->sure();
     const double loose = channel.law != nullptr ? channel.law->looseness() : 1;
-    Beside beside{last_ && channel.law == nullptr ? &*last_ : nullptr, step, loose, 0};
+    Beside beside{channel.law == nullptr ? &*last_ : nullptr, step, loose, 0};
     double sum = 0;
     for (std::size_t i = 0; i < channel.predictors.size(); ++i) {
       const double far = predictions_[i] - blended;
@@ -334,7 +335,6 @@ class Model {
   std::vector<Expert> experts_;
   std::vector<Limbs> limbs_;
   OwnChains own_;
-  bool has_own_;
   std::vector<Channel> channels_;
   std::vector<std::unique_ptr<Lawful>> laws_;
   std::optional<Kinematics> kinematics_;

@@ -98,14 +98,12 @@ Plans plans(std::span<const Column> columns, std::span<const Coupling> couplings
   if (knows_skeleton(columns, level)) {
     add_guessed(made, columns, 0, 0.9);
     if (level >= 9) add_guessed(made, columns, 2, 0.98);
-  } else if (level == 3 || level == 5) {
-    made.add(LimbsPlan{kLimbSlot, 2, 0.92, 8, 0});
   } else {
-    made.add(LimbsPlan{kLimbSlot, 2, 0.92, 6, 6});
+    made.add(LimbsPlan{kLimbSlot, 2, 0.92});
   }
-  if (level >= 5) made.order.push_back({Predictor::Kind::own});
+  made.order.push_back({Predictor::Kind::own});
   if (level >= 9) {
-    made.add(LimbsPlan{kMoveSlot, 1, 0.94, 6, 6});
+    made.add(LimbsPlan{kMoveSlot, 1, 0.94});
     add_blocks(made, channels, 0.998);
   }
   for (const auto& coupling : couplings) {

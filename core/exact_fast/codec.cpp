@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "coding/fail.hpp"
 #include "coding/sides.hpp"
+#include "exact/expert.hpp"
 #include "exact/noise.hpp"
+#include "exact_fast/lawful.hpp"
 #include "exact_fast/neighbours.hpp"
 #include "exact_fast/ruler.hpp"
+#include "exact_fast/second.hpp"
 #include "exact_fast/symbols.hpp"
 
 namespace mocapress::exact {
@@ -18,10 +23,11 @@ constexpr double kLargest = 1e12;        // levels beyond are taken for this
 constexpr std::size_t kSoundEvery = 16;  // frames
 constexpr double kFirstScale = 16;       // levels: of a channel of which nothing is known
 constexpr double kFirstError = 0.25;
-constexpr double kFloor = 0.3;      // in steps: as close as a prediction can be expected to come
-constexpr double kMostErrors = 20;  // an error beyond so many scales counts as one of them
+constexpr double kLeastScale = 1e-100;  // its square is not 0
+constexpr double kFloor = 0.1;     // in steps: as close as a prediction can be expected to come
+constexpr double kMostErrors = 8;  // an error beyond so many scales counts as one of them
 constexpr int kMostOctaves = 900 * kOctave;
-constexpr int kNarrower = 70;  // the tables' scale is smaller than the mean error
+constexpr int kNarrower = 65;  // the tables' scale is smaller than the mean error
 
 // How far off the predictions of each channel were lately, at two speeds.
 class Errors {
@@ -41,7 +47,7 @@ class Errors {
 
   void next_frame() {
     ++seen_;
-    fast_rate_ = std::max(0.25, 1.0 / seen_);
+    fast_rate_ = std::max(0.35, 1.0 / seen_);
     slow_rate_ = std::max(0.06, 1.0 / seen_);
   }
 
@@ -57,7 +63,7 @@ class Errors {
 // in 1/256 of what octaves() has.
 class Activity {
  public:
-  int level() const { return mean_ >> 9; }  // half of it is to be expected again
+  int level() const { return mean_ >> 8; }
 
   void learn(double size, double scale, int log_scale) {
     const int more = octaves(size + 0.1 * scale) - log_scale + kUsual;
@@ -70,29 +76,44 @@ class Activity {
   int mean_ = 0;
 };
 
-double sane(double level) {
+double cut(double level) {
   return level > -kLargest && level < kLargest ? level : level >= kLargest ? kLargest : -kLargest;
 }
 
-template <int kOwn, int kOthers>
+// In place of a second prediction.
+struct NoSecond {
+  explicit NoSecond(std::size_t) {}
+};
+
+template <class Neighbours, class Second = NoSecond>
 class FastModel {
+  static constexpr bool kSecond = !std::is_same_v<Second, NoSecond>;
+
  public:
-  FastModel(std::span<const Column> columns, double fading)
-      : noise_(columns),
+  FastModel(const Clip& clip, float fading, bool lawful)
+      : noise_(clip.columns),
         count_(noise_.first()),
-        neighbours_(count_, {kOwn, kOthers, fading}),
-        errors_(count_),
-        last_(count_),
-        next_(count_) {
-    for (std::size_t c = 0; c < count_; ++c) rulers_.emplace_back(columns[c]);
+        frames_(count_),
+        neighbours_(count_, fading),
+        second_(count_),
+        errors_(count_) {
+    for (std::size_t c = 0; c < count_; ++c) rulers_.emplace_back(clip.columns[c]);
+    if (lawful) laws_.emplace(clip);
   }
 
   template <class Side>
   void code_frame(Side& side, double* row) {
     noise_.code(side, row);
+    frames_.next();
+    if constexpr (kSecond) second_.begin(frames_);
     for (std::size_t c = 0; c < count_; ++c) row[c] = code_number(side, c, row[c]);
-    if (!first_) neighbours_.learn();
     errors_.next_frame();
+    if (first_) {
+      frames_.fill();
+    } else {
+      neighbours_.learn();
+      if constexpr (kSecond) second_.learn(frames_);
+    }
     first_ = false;
   }
 
@@ -100,12 +121,20 @@ class FastModel {
   template <class Side>
   double code_number(Side& side, std::size_t c, double number) {
     Ruler& ruler = rulers_[c];
-    const double predicted = sane(neighbours_.template predict<kOthers>(c, next_[c]));
+    const double before = frames_.level(c, 1);
+    double move = frames_.difference(c, 1, 1) + neighbours_.predict(c);
+    if constexpr (kSecond) move = second_.blend(c, move);
+    ToldByLaw* const told = first_ || !laws_ ? nullptr : laws_->of(c);
+    if (told != nullptr) move = told->choose(c, frames_, move);
+    double predicted = cut(before + move);
     const int log_scale =
         first_ ? octaves(kFirstScale)
                : std::clamp(errors_.usual(c, kFloor * ruler.step()) + activity_.level() - kNarrower,
                             -kMostOctaves, kMostOctaves);
     const double scale = from_octaves(log_scale);
+    if constexpr (kSecond) {
+      if (told == nullptr) predicted = cut(before + (move + second_.moved_by_past(c, scale)));
+    }
     ruler.reach(std::fabs(predicted) + scale);
     const std::int64_t near = ruler.near(predicted);
 
@@ -125,40 +154,45 @@ class FastModel {
       number = std::bit_cast<double>(side.raw(64, std::bit_cast<std::uint64_t>(number)));
       level = ruler.level(number);
     }
-    learn(c, std::isfinite(level) ? sane(level) : predicted, predicted, scale, log_scale);
-    return number;
-  }
-
-  void learn(std::size_t c, double level, double predicted, double scale, int log_scale) {
-    if (first_) {
-      last_[c] = next_[c] = level;
-      return;
-    }
+    level = std::isfinite(level) ? cut(level) : predicted;
+    frames_.set(c, level);
+    if (first_) return number;
+    if (told != nullptr) told->learn(level - before, scale);
     const double size = std::fabs(level - predicted);
     errors_.learn(c, std::min(size, kMostErrors * scale));
     activity_.learn(size, scale, log_scale);
-    neighbours_.set(c, level - next_[c]);
-    next_[c] = level + (level - last_[c]);
-    last_[c] = level;
+    neighbours_.set(c, static_cast<float>(frames_.bend(c)));
+    if constexpr (kSecond) {
+      second_.see(c, level - before, std::max(scale, kLeastScale), told == nullptr);
+    }
+    return number;
   }
 
   NoiseColumns noise_;
   std::size_t count_;  // columns that are predicted
+  Frames frames_;
   Neighbours neighbours_;
+  Second second_;
+  std::optional<ToldByLaws> laws_;
   Errors errors_;
   Activity activity_;
   std::vector<Ruler> rulers_;
-  std::vector<double> last_;  // levels
-  std::vector<double> next_;  // where the last two levels lead
   bool first_ = true;
 };
 
 template <class Action>
 void with_model(const Clip& clip, Action action) {
-  if (clip.level == 1) {
-    action(FastModel<2, 4>(clip.columns, 0.91));
-  } else {
-    action(FastModel<2, 8>(clip.columns, 0.9));
+  switch (clip.level) {
+    case 1:
+      return action(FastModel<Neighbours<2, 0, 4>>(clip, 0.91f, false));
+    case 2:
+      return action(FastModel<Neighbours<2, 0, 8>>(clip, 0.9f, false));
+    case 3:
+      return action(FastModel<Neighbours<2, 0, 8>>(clip, 0.9f, true));
+    case 4:
+      return action(FastModel<Neighbours<0, 0, 8>, Second<false>>(clip, 0.9f, true));
+    default:
+      return action(FastModel<Neighbours<0, 6, 6>, Second<true>>(clip, 0.93f, true));
   }
 }
 
@@ -168,7 +202,7 @@ Bytes encode_fast(const double* values, std::size_t frames, const Clip& clip, St
   RansWriting side;
   const std::size_t count = clip.columns.size();
   std::vector<double> row(count);
-  with_model(clip, [&](auto model) {
+  with_model(clip, [&](auto&& model) {
     for (std::size_t f = 0; f < frames; ++f) {
       std::copy_n(values + f * count, count, row.data());
       model.code_frame(side, row.data());
@@ -181,7 +215,7 @@ Bytes encode_fast(const double* values, std::size_t frames, const Clip& clip, St
 void decode_fast(ByteView payload, double* values, std::size_t frames, const Clip& clip,
                  bool whole) {
   RansReading side(payload);
-  with_model(clip, [&](auto model) {
+  with_model(clip, [&](auto&& model) {
     for (std::size_t f = 0; f < frames; ++f) {
       if (f % kSoundEvery == 0 && !side.sound()) break;
       model.code_frame(side, values + f * clip.columns.size());

@@ -1,4 +1,4 @@
-// The fast levels of `exact`, 1 and 2: one predictor, one scale and fixed tables per number.
+// The fast levels of `exact`, 1 to 5: one or two predictors, one scale and fixed tables per number.
 // docs/format.md describes what they write.
 #pragma once
 
@@ -8,10 +8,9 @@
 
 namespace mocapress::exact {
 
-inline constexpr int kFastLevels = 2;
+inline constexpr int kFastLevels = 5;
 
-// As encode and decode of exact/codec.hpp. Couplings and starts have no meaning here, and nothing
-// is learned.
+// As encode and decode of exact/codec.hpp. Starts have no meaning here, and nothing is learned.
 Bytes encode_fast(const double* values, std::size_t frames, const Clip& clip, Start* learned);
 
 void decode_fast(ByteView payload, double* values, std::size_t frames, const Clip& clip,

@@ -22,14 +22,14 @@ def decode(
     told = Header(record, len(formats))
     beside = Told(record, len(formats))
     record.end()
-    level = told.level or int(parameters.get("level", "6"))
+    level = told.level or int(parameters.get("level", "5"))
     lists = read_model(model) if told.learned else {}
     rows: list[list[float]] = []
     for frames, packed in chunks:
         payload, masks = beside.unpack(packed, frames)
         coded: list[list[float]] = [[] for _ in range(frames)]
-        if told.columns and level < 3:
-            coded = exact_fast.decode(payload, frames, told.columns, level)
+        if told.columns and level < 6:
+            coded = exact_fast.decode(payload, frames, told.columns, told.couplings, level)
         elif told.columns:
             stream = Coded(payload)
             for start in range(0, len(told.columns), PART):

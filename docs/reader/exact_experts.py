@@ -115,10 +115,10 @@ def make_experts(
     """Make the experts of channels, of which ``columns`` are the columns of the clip."""
     n, make = len(columns), partial(Expert, levels)
 
-    def limbs(slot: int, order: int, fading: float, size: int, root: int) -> list[Expert]:
+    def limbs(slot: int, order: int, fading: float) -> list[Expert]:
         """Make those of blocks, with the first channels."""
-        blocks = [range(at, min(at + size, n)) for at in range(0, n, size)]
-        known = [[c for c in range(b[0]) if c < root or c >= b[0] - size] for b in blocks]
+        blocks = [range(at, min(at + 6, n)) for at in range(0, n, 6)]
+        known = [[c for c in range(b[0]) if c < 6 or c >= b[0] - 6] for b in blocks]
         return [
             make(slot, order, fading, block, [(c, 0) for c in before])
             for block, before in zip(blocks, known, strict=True)
@@ -131,11 +131,10 @@ def make_experts(
             older = [(c, age) for age in (2, 1) for c in run]
             experts.append(make(1, 2, 0.98, run, older, guess=skeleton.guess))
     else:
-        experts = limbs(0, 2, 0.92, *((8, 0) if level in (3, 5) else (6, 6)))
-    if level >= 5:
-        experts += [make(2, 1, 0.97, [c], [(c, 3), (c, 2), (c, 1)]) for c in range(n)]
+        experts = limbs(0, 2, 0.92)
+    experts += [make(2, 1, 0.97, [c], [(c, 3), (c, 2), (c, 1)]) for c in range(n)]
     if level >= 9:
-        experts += limbs(3, 1, 0.94, 6, 6)
+        experts += limbs(3, 1, 0.94)
         count = -(-n // 160)
         wide = [range(n * b // count, n * (b + 1) // count) for b in range(count)]
         experts += [make(4, 1, 0.998, block, [(c, 1) for c in block]) for block in wide]

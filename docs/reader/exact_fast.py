@@ -1,4 +1,4 @@
-"""Levels 1 and 2 of ``exact`` (docs/format/exact_fast.md)."""
+"""Levels 1 to 5 of ``exact`` (docs/format/exact_fast.md)."""
 
 import math
 from bisect import bisect_right
@@ -6,26 +6,39 @@ from functools import cache
 from itertools import accumulate
 
 from exact_coding import Noise
-from exact_functions import cut, rounded_away, total
-from exact_header import Column
+from exact_experts import Blend, Expert
+from exact_functions import cut, rounded_away
+from exact_header import Column, Coupling
+from exact_last import LastStage, Shared
+from exact_model import make_told
+from exact_skeleton import Levels
 from lines import (
     DECIMALS,
     FLOAT64,
     SHORTEST32,
     SIGNIFICANT,
     Line,
+    bits32,
     bits64,
     decade_of_number,
+    of_bits32,
     of_bits64,
     power_of_ten,
 )
 from streams import Bit, Intervals
 
-# Own bends and channels before that predict, and the fading.
-INPUTS = {1: (2, 4, 0.91), 2: (2, 8, 0.9)}
+# Own bends, first channels and channels before that predict, and the fading.
+INPUTS = {1: (2, 0, 4, 0.91), 2: (2, 0, 8, 0.9), 3: (2, 0, 8, 0.9), 4: (0, 0, 8, 0.9)}
+INPUTS[5] = (0, 6, 6, 0.93)
+LAWS_FROM, SECOND_FROM, LAST_STAGE_FROM = 3, 4, 5
 # Where each bucket but the last begins, and log2 of how wide it is.
 BUCKETS = [(a, 0) for a in range(16)]
 BUCKETS += [(more << k, k) for k in range(3, 10) for more in (2, 3)]
+
+
+def single(x: float) -> float:
+    """Round to binary32."""
+    return of_bits32(bits32(x))
 
 
 def octaves(x: float) -> int:
@@ -73,50 +86,55 @@ class Channel:
 
     def __init__(self, column: Column, before: list["Channel"], level: int) -> None:
         """Take the channels before it in a row."""
-        own, others, self.fading = INPUTS[level]
+        own, roots, others, fading = INPUTS[level]
         self.line, self.unit, self.before = column.line, column.unit, before[-others:]
-        self.missing = [0.0] * (others - len(self.before))
-        self.bends = [0.0] * own
-        """Of this row last."""
-        count = own + others
-        self.s, self.w = [1e-4] * count, [0.0] * count
+        far = len(before) >= roots + others
+        self.roots = before[:roots] if far else []
+        self.missing = [0.0] * (0 if far else roots), [0.0] * (others - len(self.before))
+        self.bends, self.bend = [0.0] * own, 0.0
+        self.fading, count = single(fading), own + roots + others
+        self.s, self.w = [single(1e-4)] * count, [0.0] * count
         self.f = [[0.0] * (count + 1) for _ in range(count)]
-        self.level = self.level_before = self.step = 0.0
+        self.step = 0.0
         self.fast = self.slow = 0.25
         self.negative, self.nonzero = Bit(), Bit()
 
     def predict(self) -> float:
-        """Prediction."""
-        own = len(self.bends)
-        self.inputs = [*self.bends, *self.missing, *(c.bends[-1] for c in self.before)]
-        terms = [w * b for w, b in zip(self.w, self.inputs, strict=True)]
-        p = (self.level + (self.level - self.level_before)) + total(terms[:own])
-        for term in terms[own:]:
-            p += term
-        return cut(p, -1e12, 1e12)
+        """Prediction: the bend."""
+        roots, others = self.missing
+        self.inputs = [*self.bends, *roots, *(c.bend for c in self.roots), *others]
+        self.inputs += [c.bend for c in self.before]
+        bend = 0.0
+        for w, b in zip(self.w, self.inputs, strict=True):
+            bend = single(bend + single(w * b))
+        return bend
 
     def learn(self) -> None:
         """Prediction: learn from a row."""
-        v, alpha, count = [*self.inputs, self.bends[-1]], 1.0, len(self.inputs)
+        v, alpha, count = [*self.inputs, self.bend], 1.0, len(self.inputs)
         for j, f in enumerate(self.f):
-            d = self.fading * self.s[j]
-            g = self.s[j] = d + alpha * (v[j] * v[j])
-            r = alpha / (g + 1e-13)
-            q = r * v[j]
-            alpha = r * (d + 1e-13)
+            d = single(single(self.fading * self.s[j]) + single(1e-13))
+            g = self.s[j] = single(d + single(alpha * single(v[j] * v[j])))
+            r = single(alpha / g)
+            q = single(r * v[j])
+            alpha = single(r * d)
             for i in range(j + 1, count + 1):
-                v[i] -= v[j] * f[i]
-                f[i] += q * v[i]
+                v[i] = single(v[i] - single(v[j] * f[i]))
+                f[i] = single(f[i] + single(q * v[i]))
         for j in reversed(range(count)):
-            self.w[j] = self.f[j][count]
+            w = self.f[j][count]
             for i in range(count - 1, j, -1):
-                self.w[j] -= self.w[i] * self.f[j][i]
+                w = single(w - single(self.w[i] * self.f[j][i]))
+            self.w[j] = w
+        self.bends = [*self.bends[1:], self.bend] if self.bends else []
 
 
 class Payload:
     """A payload: its rows, one behind the other."""
 
-    def __init__(self, payload: bytes, columns: list[Column], level: int) -> None:
+    def __init__(
+        self, payload: bytes, columns: list[Column], couplings: list[Coupling], level: int
+    ) -> None:
         self.stream = Intervals(payload)
         self.channels: list[Channel] = []
         for column in columns:
@@ -125,38 +143,78 @@ class Payload:
         self.noises = [Noise(column.line, []) for column in columns if column.noise]
         self.shared = 0
         """A of the scale."""
+        count = len(self.channels)
+        self.levels = Levels([channel.unit for channel in self.channels])
+        self.told = make_told(couplings, self.levels) if level >= LAWS_FROM else {}
+        self.own: list[Expert] = []
+        if level >= SECOND_FROM:
+            self.own = [own_expert(self.levels, c) for c in range(count)]
+        self.blends = [Blend(2, level) for _ in self.own]
+        self.last = [LastStage() for _ in range(count if level >= LAST_STAGE_FROM else 0)]
+        self.weights, self.products = Shared(), dict[int, list[float]]()
 
     def row(self, t: int) -> list[float]:
         """Take a row."""
         noise = [column.next(self.stream) for column in self.noises]
-        numbers = [self._later(c, t) if t > 0 else self._first(c) for c in self.channels]
-        for channel in self.channels if t > 0 else []:
+        count = len(self.channels)
+        if t == 0:
+            return [self._first(c) for c in range(count)] + noise
+        for past in self.levels.past:
+            past[1:] = past[:4]
+        self.products.clear()
+        numbers = [self._later(c, t) for c in range(count)]
+        for channel in self.channels:
             channel.learn()
+        for expert in self.own:
+            expert.learn()
+        if self.last:
+            self.weights.learn(self.products, count)
         return numbers + noise
 
-    def _first(self, channel: Channel) -> float:
+    def _first(self, c: int) -> float:
         """Take a number of row 0."""
-        number, level = self._number(channel, 0.0, 1024)
-        channel.level = channel.level_before = level
+        number, level = self._number(self.channels[c], 0.0, 1024)
+        self.levels.past[c][:] = [level] * 5
         return number
 
-    def _later(self, channel: Channel, t: int) -> float:
-        """Scale: take a number of another row, and learn its scale."""
-        p, floor = channel.predict(), 0.3 * channel.step
-        mean = 5 * octaves(channel.fast + floor) + 3 * octaves(channel.slow + floor)
-        s = int(mean / 8) + self.shared // 512 - 70
-        s = min(max(s, -900 * 256), 900 * 256)
-        number, level = self._number(channel, p, s)
-        error, scale = abs(level - p), of_octaves(s)
-        far = min(error, 20 * scale)
-        channel.fast += max(1 / t, 0.25) * (far - channel.fast)
+    def _later(self, c: int, t: int) -> float:
+        """Take a number of another row, and learn from it."""
+        channel, past, told = self.channels[c], self.levels.past[c], self.told.get(c)
+        before = past[1]
+        move = (past[1] - past[2]) + channel.predict()
+        if self.own:
+            two = [move, self.own[c].predict(c) - before]
+            move = self.blends[c].mix(two, (two[0] + two[1]) * 0.5)
+        if told:
+            move = told.choose([*told.predict(), move])
+        s = self._scale(channel)
+        scale, p = of_octaves(s), cut(before + move, -1e12, 1e12)
+        stage = self.last[c] if self.last and not told else None
+        if stage:
+            stage.apart({})
+            p = cut(before + (move + stage.past(scale) * scale), -1e12, 1e12)
+        number, past[0] = self._number(channel, p, s)
+        e, error = past[0] - before, abs(past[0] - p)
+        channel.bend = single((past[0] - past[1]) - (past[1] - past[2]))
+        if self.own:
+            self.blends[c].learn(e, max(scale, 1e-100))
+        if told:
+            told.learn(e, scale)
+        if stage:
+            self.products[c] = stage.learn(e - move, self.weights.weights)
+        far = min(error, 8 * scale)
+        channel.fast += max(1 / t, 0.35) * (far - channel.fast)
         channel.slow += max(1 / t, 0.06) * (far - channel.slow)
         x = min(max(octaves(error + 0.1 * scale) - s + 185, -768), 768)
         self.shared += (256 * x - self.shared) // 8
-        bend = level - (channel.level + (channel.level - channel.level_before))
-        channel.bends = [*channel.bends[1:], bend]
-        channel.level, channel.level_before = level, channel.level
         return number
+
+    def _scale(self, channel: Channel) -> int:
+        """Scale: give S."""
+        floor = 0.1 * channel.step
+        mean = 5 * octaves(channel.fast + floor) + 3 * octaves(channel.slow + floor)
+        s = int(mean / 8) + self.shared // 256 - 65
+        return min(max(s, -900 * 256), 900 * 256)
 
     def _number(self, channel: Channel, p: float, s: int) -> tuple[float, float]:
         """Take a number; give it and its level ("Steps")."""
@@ -230,9 +288,16 @@ class Payload:
         return sign * number, sign * number * unit
 
 
-def decode(payload: bytes, frames: int, columns: list[Column], level: int) -> list[list[float]]:
+def own_expert(levels: Levels, c: int) -> Expert:
+    """Second prediction: make the expert of a channel."""
+    return Expert(levels, None, 1, 0.97, [c], [(c, 3), (c, 2), (c, 1)])
+
+
+def decode(
+    payload: bytes, frames: int, columns: list[Column], couplings: list[Coupling], level: int
+) -> list[list[float]]:
     """Give the coded columns of a payload, row by row."""
-    told = Payload(payload, columns, level)
+    told = Payload(payload, columns, couplings, level)
     rows = [told.row(t) for t in range(frames)]
     told.stream.end()
     return rows

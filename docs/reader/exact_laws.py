@@ -81,13 +81,13 @@ class Middle:
     """Laws: the middle of a chain."""
 
     def __init__(self, table: list[float]) -> None:
-        self.t, self.y = table[-12:], 0.0
+        self.t, self.y, self.slope = table[-12:], 0.0, -1.0
 
     def tell(self, _target: int, sources: list[float], _known: list[float]) -> list[float]:
         """Tell y."""
         first, t = rotation(*sources[:3]), self.t
         tau = twist(UNIT, first)
-        slope, before, moved = -1.0, 0.0, 0.0
+        before = moved = 0.0
         for i in range(8):
             own = rotation(sources[3], self.y, sources[4])
             y2 = applied(first, own[1])
@@ -96,10 +96,11 @@ class Middle:
             for j in range(4):
                 told += powered(t[8 + j], (tau, j), (v, 3 - j))
             off = (told - twist(UNIT, own)) / DEGREE
-            slope = (off - before) / moved if i > 0 else slope
-            before, moved = off, -off / slope if slope < -0.1 else off
+            if i > 0:
+                self.slope = (off - before) / moved
+            before, moved = off, -off / self.slope if self.slope < -0.1 else off
             self.y = cut(self.y + moved, -90.0, 90.0)
-            if not abs(moved) > 1e-4:
+            if not abs(moved) > 1e-3:
                 break
         return [self.y]
 
@@ -151,7 +152,7 @@ class Chain:
         for _ in range(12):
             terms = polynomial_terms(1 - dot(UP, y1), *beta)
             told = iter(self.branches[branch])
-            g, h = (total([next(told) * term for term in terms]) for _ in range(2))
+            g, h = (by_fours([next(told) * term for term in terms]) for _ in range(2))
             w = plus(y1, times(UP, h))
             along = dot(y2, w)
             q = along * along - dot(w, w) + g * g
@@ -159,9 +160,15 @@ class Chain:
             length = max(math.sqrt(dot(v, v)), 1e-30)
             y3 = tuple(component / length for component in v)
             old, beta = beta, (1 - dot(UP, y3), 1 - dot(y1, y3))
-            if max(abs(beta[0] - old[0]), abs(beta[1] - old[1])) < 1e-8:
+            if max(abs(beta[0] - old[0]), abs(beta[1] - old[1])) < 1e-6:
                 break
         return tuple(dot(column, y3) for column in self.second), beta
+
+
+def by_fours(terms: list[float]) -> float:
+    """Last axis: a sum of four sums."""
+    sums = [total(terms[k::4]) for k in range(4)]
+    return (sums[0] + sums[1]) + (sums[2] + sums[3])
 
 
 def polynomial_terms(*variables: float) -> list[float]:

@@ -1,4 +1,4 @@
-"""Channels of ``exact`` at levels 3 to 9 (docs/format/exact.md)."""
+"""Channels of ``exact`` at levels 6 to 9 (docs/format/exact.md)."""
 
 import math
 from itertools import islice
@@ -51,6 +51,16 @@ class Told:
         """Choice: learn from the move that was right."""
         for i, p in enumerate(self.moves):
             self.errors[i] += 0.1 * (min(abs(e - p), 20 * scale) - self.errors[i])
+
+
+def make_told(couplings: list[Coupling], levels: Levels) -> dict[int, Told]:
+    """Make what laws and joints tell, by the channel."""
+    told: dict[int, Told] = {}
+    for one in couplings:
+        if one.kind > 0:
+            law = one.joint.tell if one.joint else make_law(one.kind)
+            told |= {c: Told(one, i, law, levels) for i, c in enumerate(one.targets)}
+    return told
 
 
 def without_turns(angle: float, before: float) -> float:
@@ -107,7 +117,7 @@ class Channel:
         self.joint = told.coupling.joint if told else None
         self.law = None if self.joint else told
         self.blend, self.spread = Blend(count + (3 if told else 0), level), Spread()
-        self.stage = LastStage() if level >= 5 and not told else None
+        self.stage = LastStage() if not told else None
         self.low = {0: 0.0, 1: -180.0, 2: 0.0}[column.turns]
         self.edges = [Bit() for _ in range(32)]
 
@@ -159,11 +169,7 @@ class Part:
         places = [column.place for column in predicted]
         self.levels, self.activity = Levels([column.unit for column in predicted]), 0.0
         self.skeleton = Skeleton(places, self.levels) if known and level > 7 else None
-        told: dict[int, Told] = {}
-        for one in couplings:
-            if one.kind > 0:
-                law = one.joint.tell if one.joint else make_law(one.kind)
-                told |= {c: Told(one, i, law, self.levels) for i, c in enumerate(one.targets)}
+        told = make_told(couplings, self.levels)
         polynomials = [(one.sources, one.targets) for one in couplings if one.kind == 0]
         self.experts = make_experts(level, self.levels, places, self.skeleton, polynomials)
         self.experts_of = [

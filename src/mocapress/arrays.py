@@ -1,7 +1,7 @@
 """Arrays of frames x channels for Zarr: ``exact`` as a codec of numcodecs, by its entry point.
 
 >>> import numcodecs
->>> codec = numcodecs.get_codec({"id": "mocapress_exact", "level": 6})
+>>> codec = numcodecs.get_codec({"id": "mocapress_exact", "level": 5})
 """
 
 from typing import Any
@@ -31,7 +31,7 @@ class ExactArrays(Codec):  # type: ignore[misc, unused-ignore]
 
     codec_id = "mocapress_exact"
 
-    def __init__(self, level: int = 6) -> None:
+    def __init__(self, level: int = 5) -> None:
         Exact(level=level)  # raises where there is no such level
         self.level = level
 

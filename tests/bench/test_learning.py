@@ -102,7 +102,7 @@ def test_three_levels_are_compared() -> None:
     found, _ = contenders()
     assert [name for name in found if name.startswith("learner")] == [
         "learner:level=1",
-        "learner:level=6",
+        "learner:level=5",
         "learner:level=9",
     ]
     (one,) = contenders("learner:level=2")[0].values()

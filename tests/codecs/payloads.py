@@ -11,12 +11,12 @@ CLIPS = ("v1_walk.amc", "v1_walk.bvh")
 
 
 def specs() -> list[str]:
-    """List the lossless codecs, those with levels at three of them."""
+    """List the lossless codecs, those with levels at four of them."""
     found = []
     for name in codecs.codec_ids():
         made = codecs.codec(name)
         if made.lossless and made.can.levels:
-            found += [f"{name}:level={level}" for level in (1, 6, 9)]
+            found += [f"{name}:level={level}" for level in (1, 5, 6, 9)]
         elif made.lossless:
             found.append(name)
     return found

@@ -24,7 +24,7 @@ GOLDEN = ROOT / "tests/golden"
 SCRIPT = Path(__file__).with_name("mcz_digest.mjs")
 PATIENCE = 120
 CODECS = [
-    *(f"exact:level={level}" for level in (1, 2, 3, 6, 9)),
+    *(f"exact:level={level}" for level in (1, 2, 3, 5, 6, 9)),
     *("app", "mrpa", "diffma", "near", "qssd"),
 ]
 FUZZ = runpy.run_path(str(ROOT / "core/fuzz/container.py"))

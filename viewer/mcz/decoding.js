@@ -18,7 +18,7 @@ const ALPHAS = {
 // Of each codec: what its module is told (core/wasm), and the most frames that a chunk has.
 const CODECS = {
   exact(own) {
-    return { told: [whole(own, "level", 6, 9)], most: whole(own, "chunk", 512, MOST_CHUNK) };
+    return { told: [whole(own, "level", 5, 9)], most: whole(own, "chunk", 512, MOST_CHUNK) };
   },
   app(own) {
     const alphas = Object.hasOwn(ALPHAS, own.table) ? ALPHAS[own.table] : undefined;

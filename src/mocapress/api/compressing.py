@@ -202,7 +202,7 @@ def compress_parts(
 
             found, failure = first_that_works(codec, work)
             warning = "; ".join(filter(None, (failure, warning))) or None
-    kept = smallest(source, parts, found.blob if found else None, notes)
+    kept = smallest(source, parts, found.blob if found else None, codec, notes)
     if found is None or kept is not found.blob:
         found = Compressed(kept, None)
     return replace(found, warning=warning)
@@ -237,7 +237,11 @@ def with_names(source: Source, parts: Split) -> Clip:
 
 
 def smallest(
-    source: Source, parts: Split | None, blob: bytes | None, notes: Mapping[str, str] | None = None
+    source: Source,
+    parts: Split | None,
+    blob: bytes | None,
+    codec: Codec,
+    notes: Mapping[str, str] | None = None,
 ) -> bytes:
     """Give the file that a codec made, or one of a general-purpose compressor.
 
@@ -249,7 +253,7 @@ def smallest(
     if parts is not None and blob is not None and size >= small:
         repetition = Repetition()
         repetition.add(parts.clip.values)
-        if not may_be_smaller(repetition, len(blob), source):
+        if not may_be_smaller(repetition, len(blob), source, by_default=codec.id == DEFAULT_CODEC):
             return blob
     plain = compress_plain(source, notes or {})
     return plain if blob is None or len(plain) < len(blob) else blob

@@ -16,6 +16,8 @@ from mocapress.source import Source
 _TOGETHER = 6
 """Neighbouring numbers of a row that are looked for together."""
 _MIXED = np.uint64(0x9E3779B97F4A7C15)
+_POOR = 0.4
+"""Above this share of the original, others are worth trying whatever the codec."""
 _WINDOWS, _WINDOW = 4, 2**14
 """How many parts of a file are packed, and their bytes."""
 _PACKED_BETTER = 0.5
@@ -57,10 +59,15 @@ def _odd(count: int) -> NDArray[np.uint64]:
     return 2 * np.arange(count, dtype=np.uint64) + np.uint64(1)
 
 
-def may_be_smaller(repetition: Repetition, coded: int, source: Source) -> bool:
-    """Tell whether others may make less of a file that takes ``coded`` bytes so far."""
+def may_be_smaller(repetition: Repetition, coded: int, source: Source, *, by_default: bool) -> bool:
+    """Tell whether others may make less of a file that takes ``coded`` bytes so far.
+
+    Only the default codec promises to be no larger than xz. Where another is asked for, what it
+    gives besides, such as columns and chunks, counts for more than a few bytes.
+    """
     size = source.size
-    if coded > _PACKED_BETTER * _packed_share(source) * size:
+    poor = min(_POOR, _PACKED_BETTER * _packed_share(source)) if by_default else _POOR
+    if coded > poor * size:
         return True
     share = repetition.share()
     return share > _TELLING and (1 - share) * size < _OTHERS_RATIO * coded

@@ -31,7 +31,7 @@ from mocapress.motion import Column, Skeleton, Stream
 
 _MOST_FRAMES = 1 << 20
 _FAST_LEVELS = 2
-"""Up to this level couplings are not looked for: core/exact_fast/codec.hpp has no use for them."""
+"""Up to this level couplings are not looked for: they have no use for them."""
 _TRIED = 256
 """Frames on which lower levels are tried, too."""
 _OTHERS = (5, 2, 1)
@@ -51,7 +51,7 @@ class Exact(Codec):
     id: ClassVar[str] = "exact"
     can: ClassVar[Capabilities] = Capabilities(lossless=True, levels=True, trains=True)
 
-    level: int = 6
+    level: int = 5
     """1, the fastest, to 9, the strongest."""
     chunk: int = 512
     """Frames that are decoded together; every chunk learns anew."""
