@@ -73,7 +73,7 @@ class Model {
       laws_.push_back(std::make_unique<Lawful>(coupling, columns));
       for (const auto target : coupling.targets) channels_[target].law = laws_.back().get();
     }
-    last_.emplace(count_, slots());
+    last_ = std::make_unique<LastStage>(count_, slots());
     if (clip.level >= kNetworkFrom) network_.emplace(count_);
     gather_blends(clip.level >= kMemoriesFrom ? Blends::kMostMemories : 1);
     // Longer chains come first, so that those that learn together are of one length.
@@ -291,7 +291,7 @@ class Model {
     const Channel& channel = channels_[c];
     const bool sure = channel.law != nullptr && channel.law->sure();
     const double loose = channel.law != nullptr ? channel.law->looseness() : 1;
-    Beside beside{channel.law == nullptr ? &*last_ : nullptr, step, loose, 0};
+    Beside beside{channel.law == nullptr ? last_.get() : nullptr, step, loose, 0};
     double sum = 0;
     for (std::size_t i = 0; i < channel.predictors.size(); ++i) {
       const double far = predictions_[i] - blended;
@@ -340,7 +340,7 @@ class Model {
   std::optional<Kinematics> kinematics_;
   std::vector<Blends> blends_;
   Frames frames_;
-  std::optional<LastStage> last_;
+  std::unique_ptr<LastStage> last_;
   std::optional<Network> network_;
   Spreads spreads_;
   Residual residual_;
