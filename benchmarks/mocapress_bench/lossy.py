@@ -1,8 +1,9 @@
 """Lossy codecs at several errors: bytes beside what the joints of a figure are off by.
 
-Errors are ACL's: of a joint in a frame, the largest of the errors of three points 3 cm along the
-joint's axes, in space. Bytes are those of the motion alone, without skeleton, names and layout: of
-codecs header and payloads, of gltfpack the buffers that its animation reads.
+Errors are those of ``near``: of a joint in a frame, how far it is off, or one of three points 3 cm
+along its axes, in space. ACL states those of the points alone. Bytes are those of the motion alone,
+without skeleton, names and layout: of codecs header and payloads, of gltfpack the buffers that its
+animation reads.
 """
 
 import json
@@ -169,7 +170,8 @@ def _apart(places: Array, turns: Array, task: Task) -> Array:
     theirs = Rotation.from_quat(turns.reshape(-1, 4)).as_matrix().reshape(ours.shape)
     moved = places * 100 - positions(task.clip) * task.unit
     points = (theirs - ours) * RADIUS + moved[..., None]
-    found: Array = np.linalg.norm(points, axis=2).max(axis=2)
+    lengths = np.linalg.norm(np.concatenate([points, moved[..., None]], axis=3), axis=2)
+    found: Array = lengths.max(axis=2)
     return found
 
 

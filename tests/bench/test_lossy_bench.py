@@ -24,12 +24,13 @@ def walk(samples: Path) -> mp.Clip:
     return mp.retime(mp.read(samples / "cmu_01_01.amc")[:130], 120)
 
 
-def test_errors_are_those_of_three_points_around_each_joint(walk: mp.Clip) -> None:
+def test_errors_are_those_of_each_joint_and_three_points_around_it(walk: mp.Clip) -> None:
     task = lossy.task_of(walk)
     changed = walk.values + 0.5 * np.sin(np.arange(walk.values.size)).reshape(walk.values.shape)
     other = walk.with_values(changed)
+    offsets = np.hstack([np.zeros((3, 1)), 3 * np.eye(3)])
     ours, theirs = (
-        positions(clip)[..., None] * task.unit + 3 * rotations(clip, form="matrix")
+        positions(clip)[..., None] * task.unit + rotations(clip, form="matrix") @ offsets
         for clip in (walk, other)
     )
     expected = np.linalg.norm(ours - theirs, axis=2).max(axis=2)

@@ -39,10 +39,10 @@ _ASSUMED_RATE = 120.0
 class Near(Codec):
     """Lossy motion of a skeleton at a guaranteed error of its joints.
 
-    The error of a joint is the largest of three points, 3 cm along its axes. ``max`` keeps every
-    error of every joint and frame, ``mean`` their mean, ``p`` both as ACL does at that precision.
-    Amounts have a unit, ``0.1cm``; without one they are in units of the file. Clips without a
-    skeleton keep the errors of their values, in degrees.
+    The error of a joint is the largest of its own place's and those of three points, 3 cm along its
+    axes. ``max`` keeps every error of every joint and frame, ``mean`` their mean, ``p`` both as ACL
+    does at that precision. Amounts have a unit, ``0.1cm``; without one they are in units of the
+    file. Clips without a skeleton keep the errors of their values, in degrees.
     """
 
     id: ClassVar[str] = "near"

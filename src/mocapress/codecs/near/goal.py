@@ -22,7 +22,7 @@ MOST_OF_PRECISION = 1.6
 class Goal:
     """What errors are measured and kept, in units of the file.
 
-    ``in_space``: errors of joints, by three points at ``radius`` along their axes; otherwise of the
+    ``in_space``: errors of joints, by their places and three points at ``radius``; otherwise of the
     values, in degrees and units of length.
     """
 
