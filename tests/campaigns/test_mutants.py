@@ -23,6 +23,7 @@ def test_mutants_are_restored_or_refused(name: str) -> None:
     assert figures["whole"] or figures["errors"]
 
 
+@pytest.mark.filterwarnings("ignore::mocapress.MotionWarning")
 @pytest.mark.parametrize(
     ("file", "name"), [("v1_markers.trc", b"points"), ("v1_odd.csv", b"table")]
 )

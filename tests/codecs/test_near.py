@@ -148,7 +148,10 @@ def test_files_say_the_bounds_of_parts_and_what_came_of_them(samples: Path) -> N
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        ("max=0.1cm,tail=0.1cm", "no joint, and no such part; expected one of head, lefthand"),
+        (
+            "max=0.1cm,tail=0.1cm",
+            "no such parameter, part or joint; expected one of head, lefthand",
+        ),
         ("max=0.1cm,feet=thin", "no bound of a part of the body: feet; expected an amount above 0"),
         ("max=0.1cm,feet=0.1deg", "in space only"),
         ("max=0.1deg,feet=0.1cm", "in space only"),

@@ -16,6 +16,12 @@ def skeleton() -> bytes:
     return _amc(range(360, 396))
 
 
+def resting() -> bytes:
+    """Give the same with neck and head at rest: what foretells the arms most tells nothing."""
+    still = ("lowerneck", "upperneck", "head")
+    return _amc(range(360, 396), (), {(i, bone): "1 2 3" for i in range(36) for bone in still})
+
+
 def leaps() -> bytes:
     """Give some bones in frames far apart, here and there with angles that no motion has."""
     bones = ("root", "lowerback", "upperback", "thorax", "lowerneck", "upperneck", "head")

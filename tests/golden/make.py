@@ -132,6 +132,11 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
         "near:max=0.1cm,chunk=20",
         {"asf_path": clips.SAMPLE.with_suffix(".asf")},
     ),
+    "v1_resting_near.amc": (
+        clips.resting(),
+        "near:max=0.1cm",
+        {"asf_path": clips.SAMPLE.with_suffix(".asf")},
+    ),
     "v1_random.bin": (random.Random(1).randbytes(200), "exact", {}),
     "v1_oddities.bvh": (clips.oddities(), "exact:level=6,chunk=12", {}),
     "v1_disorder.amc": (clips.disorder(), "exact:level=6,chunk=10", {}),

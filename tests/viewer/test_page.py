@@ -62,7 +62,7 @@ def test_an_exported_page_may_hold_motion_within_a_largest_error(
     [
         (["--near", "max=far"], "an amount above 0"),
         (["--near", "max=1cm", "--max-error", "1"], "instead of --max-error"),
-        (["--near", "wide=1"], "no such parameter"),
+        (["--near", "wide=1"], "no such parameter, part or joint"),
     ],
 )
 def test_near_that_cannot_be_is_refused(

@@ -65,7 +65,9 @@ def _joints(skeleton: Skeleton, name: str) -> list[int]:
     tops = _TOPS.get(re.sub("[^a-z]", "", name.lower()), ())
     if not tops or any(top not in known for top in tops):
         what = (
-            "the names of joints do not say where it is" if tops else "no joint, and no such part"
+            "the names of joints do not say where it is"
+            if tops
+            else "no such parameter, part or joint"
         )
         raise ParameterError(
             f"near:{name}: {what}",
@@ -80,4 +82,4 @@ def _joints(skeleton: Skeleton, name: str) -> list[int]:
 
 
 def _some(names: tuple[str, ...]) -> str:
-    return ", ".join(names[:40]) + (" ..." if len(names) > 40 else "")
+    return ", ".join(names[:8]) + (" ..." if len(names) > 8 else "")
