@@ -35,7 +35,7 @@ def _as_motion() -> Iterator[None]:
     """Keep even so short a clip as motion."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(compressing, "_SMALL", 0)
-        patch.setattr(compressing, "may_be_smaller", lambda *_, **__: False)
+        patch.setattr(compressing, "may_be_smaller", lambda *_: False)
         yield
 
 

@@ -253,7 +253,7 @@ def smallest(
     if parts is not None and blob is not None and size >= small:
         repetition = Repetition()
         repetition.add(parts.clip.values)
-        if not may_be_smaller(repetition, len(blob), source, by_default=codec.id == DEFAULT_CODEC):
+        if not may_be_smaller(repetition, len(blob), source, codec):
             return blob
     plain = compress_plain(source, notes or {})
     return plain if blob is None or len(plain) < len(blob) else blob

@@ -19,7 +19,7 @@ from mocapress.api.opening import Opened
 from mocapress.api.plain import compress_plain
 from mocapress.api.repetition import Repetition, may_be_smaller
 from mocapress.api.restoring import pieces
-from mocapress.codecs import DEFAULT_CODEC, Codec
+from mocapress.codecs import Codec
 from mocapress.codecs.fallback import first_that_works
 from mocapress.container import Head, MczWriter, Original, is_storable_time, pack
 from mocapress.errors import CorruptError, FormatError, VerificationError
@@ -97,9 +97,7 @@ def compress_long(
         made, lambda way: _written(source, parts, digest, way, notes or {})
     )
     if found is not None:
-        if source.size <= _HELD and may_be_smaller(
-            found.repetition, len(found), source, by_default=made.id == DEFAULT_CODEC
-        ):
+        if source.size <= _HELD and may_be_smaller(found.repetition, len(found), source, made):
             plain = compress_plain(source, notes or {})
             if len(plain) < len(found):
                 found = LongFile()

@@ -11,6 +11,7 @@ import zlib
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapress.codecs import DEFAULT_CODEC, Codec
 from mocapress.source import Source
 
 _TOGETHER = 6
@@ -59,15 +60,16 @@ def _odd(count: int) -> NDArray[np.uint64]:
     return 2 * np.arange(count, dtype=np.uint64) + np.uint64(1)
 
 
-def may_be_smaller(repetition: Repetition, coded: int, source: Source, *, by_default: bool) -> bool:
-    """Tell whether others may make less of a file that takes ``coded`` bytes so far.
+def may_be_smaller(repetition: Repetition, coded: int, source: Source, codec: Codec) -> bool:
+    """Tell whether others may make less of a file of which a codec made ``coded`` bytes.
 
     Only the default codec promises to be no larger than xz. Where another is asked for, what it
     gives besides, such as columns and chunks, counts for more than a few bytes.
     """
     size = source.size
-    poor = min(_POOR, _PACKED_BETTER * _packed_share(source)) if by_default else _POOR
-    if coded > poor * size:
+    if coded > _POOR * size:
+        return True
+    if codec.id == DEFAULT_CODEC and coded > _PACKED_BETTER * _packed_share(source) * size:
         return True
     share = repetition.share()
     return share > _TELLING and (1 - share) * size < _OTHERS_RATIO * coded
