@@ -171,10 +171,9 @@ $(VENV)/.zig:
 
 # A codec's kernels built in other ways, build/check/WAY/CODEC: each must print what
 # tests/golden/kernels_CODEC.txt says. MOCAPRESS_NO_CLONES turns run-time dispatch off, so that a
-# way is what its flags say; the usual one has it, and emulated processors choose.
+# way is what its flags say; the package has it, and emulated processors choose.
 EXACT := -std=c++20 -ffp-contract=off -fno-math-errno -fno-trapping-math -Wno-psabi -Wall -Wextra -Icore
 ONE := -DMOCAPRESS_NO_CLONES
-check_usual := $(CXX) -O3 $(EXACT)
 check_o0 := $(CXX) -O0 $(EXACT) $(ONE)
 check_baseline := $(CXX) -O3 -march=x86-64 $(EXACT) $(ONE)
 check_avx2 := $(CXX) -O3 -mavx2 -mfma $(EXACT) $(ONE)
@@ -207,6 +206,11 @@ build/check/%.o: $(wildcard core/check/*) $(kernels) $(headers)
 
 build/check/%: $$(addprefix build/check/$$(*D)/,$$(addsuffix .o,$$(basename $$(check_sources))))
 	$(check_$(*D)) $^ -o $@
+
+# Of the library that the package has.
+build/check/usual/%: core/check/%.cpp $(wildcard core/check/*) $(VENV)/.installed
+	@mkdir -p $(@D)
+	$(CXX) -O3 $(EXACT) $< $$(ls build/*/libmocapress_core.a | head -1) -o $@
 
 # Of the objects that modules are made of, run by Node.
 build/check/wasm/%: $$(addprefix build/wasm/,$$(addsuffix .o,$$(basename $$(check_sources))))
