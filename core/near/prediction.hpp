@@ -54,8 +54,9 @@ class Prediction {
     // Its values in the span; these and averages, less those of the frame before the span.
     std::vector<double> values, rest, moved, averaged;
     bool rests = true;  // whether its rest is 0 throughout the span
-    // Where its part of the normal equations begins: four numbers of it and each source, of which the
-    // first two are the right side; then of each source and each from it on, a square of the matrix.
+    // Where its part of the normal equations begins: four numbers of it and each source, of which
+    // the first two are the right side; then of each source and each from it on, a square of the
+    // matrix.
     std::size_t place = 0;
   };
 
@@ -66,7 +67,7 @@ class Prediction {
   std::vector<Own> channels_;
   double caution_ = 0;
   std::size_t length_ = 0;
-  double seen_ = 0;  // observations, which fade
+  double seen_ = 0;                // observations, which fade
   std::vector<double> equations_;  // of all channels
   std::vector<Use> uses_;          // of products, by which equations grow; none before they do
   // Of a group of frames, in rows: what all channels moved and what their averages did, side by
