@@ -12,7 +12,7 @@ from mocapress.errors import UnsupportedError
 from mocapress.motion import Clip
 from mocapress.motion.kinematics import positions
 from mocapress.motion.standard_joints import JOINTS, REQUIRED, SIDED, by_mapping, by_names
-from mocapress.search.topology import by_topology
+from mocapress.search.topology import by_topology, head_between
 
 Array = NDArray[np.float64]
 
@@ -34,6 +34,8 @@ _JUMP = 0.15
 """Leg lengths in a frame: hips that move farther, and so only there, were put elsewhere."""
 _SUDDEN = 4.0
 """How many times as far as two frames before and behind: some ten times gravity."""
+_LOOKED_AT = 64
+"""Frames by which joints are found where names do not tell, about so many."""
 _AT = {joint: index for index, joint in enumerate(JOINTS)}
 _LEGS = [[_AT[f"{side}_{joint}"] for joint in SIDED[3:]] for side in ("left", "right")]
 
@@ -138,7 +140,7 @@ def standard_motion(
     if not (np.abs(all_places) < _FAR).all():
         what = "search needs places that are numbers, none of them huge"
         raise UnsupportedError(what, file=_name(clip))
-    found = _correspondence(clip, mapping, all_places[0])
+    found = _correspondence(clip, mapping, all_places)
     places = _sixteen(all_places, found)
     if needed is not before:
         low = np.searchsorted(needed, before)
@@ -152,10 +154,14 @@ def _correspondence(clip: Clip, mapping: Mapping[str, str] | None, places: Array
     assert clip.skeleton is not None
     own = by_mapping(clip.skeleton, mapping or {})
     named = by_names(clip.skeleton) | own
+    arms = [named[joint] for joint in ("left_shoulder", "right_shoulder") if joint in named]
+    if "head" not in named and len(arms) == 2:
+        head = head_between(clip.skeleton, arms)
+        named |= {} if head is None else {"head": head}
     missing = [joint for joint in REQUIRED if joint not in named]
     if not missing:
         return named
-    found = by_topology(clip.skeleton, places) | own
+    found = by_topology(clip.skeleton, places[:: 1 + len(places) // _LOOKED_AT]) | own
     if all(joint in found for joint in REQUIRED):
         return found
     raise UnsupportedError(
