@@ -1,5 +1,6 @@
 """The sixteen standard joints: the same for the same motion, whatever the skeleton and the file."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import pytest
 from people import STYLES, named, person
 
 from mocapress.errors import ParameterError, UnsupportedError
-from mocapress.motion import Joint, Skeleton
+from mocapress.motion import Clip, Column, Joint, Skeleton
 from mocapress.motion.standard_joints import by_names, read_mapping
 from mocapress.search.features import features, read_record, record
 from mocapress.search.standard import standard_motion
@@ -139,6 +140,49 @@ def test_z_up_is_seen() -> None:
     upright = standard_motion(flat)
     lying = standard_motion(replace(flat, skeleton=Skeleton(tuple(tilted))))
     assert lying.places == pytest.approx(upright.places, abs=1e-9)
+
+
+def turned_about_x(clip: Clip, degrees: float) -> Clip:
+    """Hang a body below a joint that turns all of it."""
+    assert clip.skeleton is not None
+    joints = [replace(joint, parent=joint.parent + 1) for joint in clip.skeleton.joints]
+    columns = [replace(column, joint=(column.joint or 0) + 1) for column in clip.columns]
+    columns.append(Column("world.rx", 0, "rx"))
+    values = np.column_stack([clip.values, np.full(clip.frames, degrees)])
+    skeleton = Skeleton((Joint("world", -1, channels=("rx",)), *joints))
+    return Clip.of(values, tuple(columns), clip.frame_time, skeleton)
+
+
+@pytest.mark.parametrize("degrees", [90, 180, -90])
+def test_bodies_are_stood_up(degrees: float) -> None:
+    upright = standard_motion(person(5))
+    turned = standard_motion(turned_about_x(person(5), degrees))
+    assert turned.places == pytest.approx(upright.places, abs=1e-9)
+    assert turned.root == pytest.approx(upright.root, abs=1e-9)
+
+
+def test_who_stands_on_the_hands_is_not_turned() -> None:
+    clip = person(5)
+    shoulders = [
+        i for i, c in enumerate(clip.columns) if re.fullmatch(".*(Left|Right)Arm.rz", c.name)
+    ]
+    values = clip.values * 0
+    values[:, shoulders] = (90, -90)  # arms beyond the head
+    handstand = standard_motion(turned_about_x(clip.with_frames(values, clip.frame_time), 180))
+    assert (handstand.places[:, 3, 1] < -0.5).all()
+
+
+@pytest.mark.parametrize("turned", [0, 40, 90, 250])
+def test_who_crawls_crawls_wherever_the_head_is(turned: float) -> None:
+    clip = person(5, turned=turned)
+    (bent,) = (i for i, c in enumerate(clip.columns) if c.name == "Hips.rx")
+    knees = [i for i, c in enumerate(clip.columns) if c.name.endswith("UpLeg.rx")]
+    values = clip.values * 0
+    values[:, bent - 1] = turned
+    values[:, bent], values[:, knees] = 80, -80  # on all fours
+    crawling = standard_motion(clip.with_frames(values, clip.frame_time))
+    assert (crawling.places[:, 3, 2] > 0.5).all()  # the head is in front
+    assert (crawling.places[:, 9, 1] < -0.5).all()  # feet are below
 
 
 def test_mirroring_exchanges_sides_and_comes_back() -> None:
