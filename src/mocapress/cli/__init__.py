@@ -24,16 +24,10 @@ def main() -> None:
             _end_stdout(error)
         if debug:
             raise
-        if isinstance(error, OSError) and isinstance(error.filename, str):
-            # A path that cannot be looked at: a folder without permission, a name too long.
-            print(f"mocapress: {error.filename}: {error.strerror}", file=sys.stderr)
-            sys.exit(1)
-        print(
-            f"mocapress: a defect of mocapress: {type(error).__name__}: {error}; "
-            "--debug shows where",
-            file=sys.stderr,
-        )
-        sys.exit(70)
+        from mocapress.cli.report import is_defect, message, say
+
+        say(message(error, ""))
+        sys.exit(70 if is_defect(error) else 1)
 
 
 def _end_stdout(error: OSError) -> None:
