@@ -29,15 +29,16 @@ def test_names_of_all_systems_mean_the_same_joints(style: str) -> None:
 def test_the_tree_tells_what_names_do(seed: int, feet: tuple[str, ...]) -> None:
     # Where there are no toes, knees say which side is left. These people bend theirs at random.
     named = person(seed, without=feet)
-    assert named.skeleton is not None
+    skeleton = named.skeleton
+    assert skeleton is not None
     knees = [
         i for i, c in enumerate(named.columns) if c.name.endswith("Leg.rx") and "Up" not in c.name
     ]
     values = named.values.copy()
     values[:, knees] = np.abs(values[:, knees]) + 10
     named = named.with_frames(values, named.frame_time)
-    joints = tuple(replace(j, name=f"q{i}") for i, j in enumerate(named.skeleton.joints))
-    unnamed = replace(named, skeleton=replace(named.skeleton, joints=joints))
+    joints = tuple(replace(j, name=f"q{i}") for i, j in enumerate(skeleton.joints))
+    unnamed = replace(named, skeleton=replace(skeleton, joints=joints))
     expected, same = standard_motion(named), standard_motion(unnamed)
     assert same.places[:, 3:] == pytest.approx(expected.places[:, 3:], abs=1e-9)
 
