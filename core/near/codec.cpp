@@ -164,15 +164,8 @@ Prediction prediction_of(const Coder& coder, const Plan& plan) {
 
 void turn_back(double* values, std::size_t frames, const Plan& plan,
                const std::vector<Angles>& starts) {
-  const std::size_t columns = plan.steps.size();
   for (std::size_t t = 0; t < plan.turnings.size(); ++t) {
-    const Turning& turning = plan.turnings[t];
-    Angles last = starts[t];
-    for (std::size_t f = 0; f < frames; ++f) {
-      double* const own = values + f * columns + turning.first;
-      last = to_file(turning, plan.radians, {own[0], own[1], own[2]}, last);
-      std::copy_n(last.begin(), 3, own);
-    }
+    to_file(plan.turnings[t], plan.radians, values, plan.steps.size(), frames, starts[t]);
   }
 }
 
