@@ -227,6 +227,8 @@ def test_info_tells_the_errors(samples: Path, tmp_path: Path) -> None:
     assert told["largest_joint_error"] == pytest.approx(errors.max(), rel=0.01)
     assert told["mean_joint_error"] == pytest.approx(errors.mean(), rel=0.01)
     assert told["largest_joint_error"] >= errors.max()
+    bare = replace(clip, skeleton=None)  # as an AMC has it
+    assert "largest_joint_error" in codec.measure(bare, encoded, 1)
 
 
 CODEC = "near:max=0.1cm"
