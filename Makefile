@@ -9,7 +9,7 @@ SANITIZE := -std=c++20 -O1 -g -ffp-contract=off -fsanitize=address,undefined,flo
 FUZZ_RUNS ?= 5000
 JOBS := $(shell getconf _NPROCESSORS_ONLN)
 sources := $(wildcard core/*/*.cpp core/*/*.hpp)
-headers := $(filter %.hpp,$(sources)) $(wildcard core/exact/data/*)
+headers := $(filter %.hpp,$(sources)) $(wildcard core/*/data/*)
 kernels := $(filter-out core/python/% core/wasm/% core/check/% core/fuzz/% core/player/%,$(filter %.cpp,$(sources)))
 
 .PHONY: demo demo-runs test long check stub tests test-js browser node player npm compilers wasm sanitize fuzz bench wheel clean
@@ -153,10 +153,14 @@ ZIG := $(BIN)/python -m ziglang c++ -target wasm32-wasi -std=c++20 -ffp-contract
 wasm: $(wasm_modules)
 	install -m 644 $^ viewer/wasm/
 
-$(wasm_modules): build/wasm/%.wasm: $(wildcard core/wasm/*) $(kernels) $(headers) | $(VENV)/.zig
+# The sources of a module; modules and the check of WebAssembly share objects.
+wasm_sources = core/wasm/space.cpp core/wasm/$*.cpp $(if $(filter $*,$(decoders)),core/wasm/decoder.cpp) \
+    $(wildcard $(patsubst %,core/%/*.cpp,$(if $(filter kinematics,$*),motion,$*) $*_fast $(if $(filter mrpa,$*),app) coding numbers))
+
+.PRECIOUS: build/wasm/%.o
+build/wasm/%.o: %.cpp $(headers) | $(VENV)/.zig
 	@mkdir -p $(@D)
-	$(ZIG) -Os -mexec-model=reactor core/wasm/space.cpp core/wasm/$*.cpp $(if $(filter $*,$(decoders)),core/wasm/decoder.cpp) \
-	    $(wildcard $(patsubst %,core/%/*.cpp,$(if $(filter kinematics,$*),motion,$*) $*_fast $(if $(filter mrpa,$*),app) coding numbers)) -o $@
+	$(ZIG) -Os -c $< -o $@.$$$$ && mv $@.$$$$ $@
 
 # The compiler for WebAssembly has 0.4 GB; no user needs it, and developers only for `make wasm`. One
 # version, so that every machine builds the same bytes.
@@ -167,10 +171,9 @@ $(VENV)/.zig:
 
 # A codec's kernels built in other ways, build/check/WAY/CODEC: each must print what
 # tests/golden/kernels_CODEC.txt says. MOCAPRESS_NO_CLONES turns run-time dispatch off, so that a
-# way is what its flags say; the usual one has it, and emulated processors choose.
+# way is what its flags say; the package has it, and emulated processors choose.
 EXACT := -std=c++20 -ffp-contract=off -fno-math-errno -fno-trapping-math -Wno-psabi -Wall -Wextra -Icore
 ONE := -DMOCAPRESS_NO_CLONES
-check_usual := $(CXX) -O3 $(EXACT)
 check_o0 := $(CXX) -O0 $(EXACT) $(ONE)
 check_baseline := $(CXX) -O3 -march=x86-64 $(EXACT) $(ONE)
 check_avx2 := $(CXX) -O3 -mavx2 -mfma $(EXACT) $(ONE)
@@ -182,11 +185,13 @@ check_windows := x86_64-w64-mingw32-g++-posix -O3 -static $(EXACT) $(ONE)
 # Not allowed; that it prints something else shows that the check sees it.
 check_contracted := $(CXX) -O2 -mavx2 -mfma $(EXACT) $(ONE) -ffp-contract=fast
 
-# With the module's own flags, run by Node.
-check_wasm := $(ZIG) -O2 $(ONE)
+check_wasm := $(ZIG) -Os
 
 # Objects, build/check/WAY/core/..., serve all codecs of a way.
 .SECONDEXPANSION:
+$(wasm_modules): build/wasm/%.wasm: $$(addprefix build/wasm/,$$(addsuffix .o,$$(basename $$(wasm_sources))))
+	$(ZIG) -Os -mexec-model=reactor $^ -o $@
+
 check_codec = $(basename $(*F))
 check_sources = core/check/$(check_codec).cpp core/coding/record.cpp core/motion/kinematics.cpp \
     core/numbers/line.cpp core/numbers/powers.cpp core/numbers/text.cpp \
@@ -201,6 +206,16 @@ build/check/%.o: $(wildcard core/check/*) $(kernels) $(headers)
 
 build/check/%: $$(addprefix build/check/$$(*D)/,$$(addsuffix .o,$$(basename $$(check_sources))))
 	$(check_$(*D)) $^ -o $@
+
+# Of the library that the package has.
+build/check/usual/%: core/check/%.cpp $(wildcard core/check/*) $(VENV)/.installed
+	@mkdir -p $(@D)
+	$(CXX) -O3 $(EXACT) $< $$(ls build/*/libmocapress_core.a | head -1) -o $@
+
+# Of the objects that modules are made of, run by Node.
+build/check/wasm/%: $$(addprefix build/wasm/,$$(addsuffix .o,$$(basename $$(check_sources))))
+	@mkdir -p $(@D)
+	$(check_wasm) $^ -o $@
 
 bench: $(VENV)/.built corpus
 	$(BIN)/mocapress bench lossless $(if $(wildcard corpus/.version),corpus/amc/cmu)

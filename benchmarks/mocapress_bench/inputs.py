@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
 
@@ -14,13 +14,26 @@ SAMPLES = Path(__file__).parents[2] / "samples"
 Corpus = Annotated[
     Path | None, typer.Argument(help="Folder of clips; without it, the samples of a checkout.")
 ]
-Json = Annotated[
-    Path | None, typer.Option("--json", help="Write all rows to this file.", metavar="FILE")
+
+
+def _writable(context: typer.Context, path: Path | None) -> Path | None:
+    """Refuse to overwrite a file before anything is measured."""
+    if path is not None and path.exists() and not context.params.get("force"):
+        usage(f"{path}: file exists; --force overwrites it")
+    return path
+
+
+def output(name: str, told: str, metavar: str = "FILE") -> Any:
+    """Give the option of a file to write, for commands that have ``Force``."""
+    return typer.Option(name, help=told, metavar=metavar, callback=_writable)
+
+
+Json = Annotated[Path | None, output("--json", "Write all rows to this file.")]
+Markdown = Annotated[Path | None, output("--markdown", "Write the tables to this file.")]
+# Known before the files are.
+Force = Annotated[
+    bool, typer.Option("--force", "-f", help="Overwrite existing files.", is_eager=True)
 ]
-Markdown = Annotated[
-    Path | None, typer.Option("--markdown", help="Write the tables to this file.", metavar="FILE")
-]
-Force = Annotated[bool, typer.Option("--force", "-f", help="Overwrite existing files.")]
 Debug = Annotated[bool, typer.Option("--debug", help="Show tracebacks.", hidden=True)]
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mocapress_bench.inputs import Force, Markdown, say, usage
+from mocapress_bench.inputs import Force, Markdown, output, say, usage
 
 if TYPE_CHECKING:
     from mocapress_bench.lossy import Point
@@ -31,9 +31,7 @@ def lossy(
             metavar="FILE",
         ),
     ] = None,
-    plot: Annotated[
-        Path | None, typer.Option("--plot", help="Draw bits against errors.", metavar="FILE.png")
-    ] = None,
+    plot: Annotated[Path | None, output("--plot", "Draw bits against errors.", "FILE.png")] = None,
     markdown: Markdown = None,
     force: Force = False,
 ) -> None:

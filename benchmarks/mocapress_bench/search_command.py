@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mocapress_bench.inputs import Debug, Force, Json, Markdown, progress_line, usage
+from mocapress_bench.inputs import Debug, Force, Json, Markdown, output, progress_line, usage
 
 if TYPE_CHECKING:
     from mocapress_bench.search_data import Take
@@ -31,10 +31,7 @@ def search(
     clips: Annotated[bool, typer.Option(help="Rank whole clips.")] = True,
     json: Json = None,
     markdown: Markdown = None,
-    plots: Annotated[
-        Path | None,
-        typer.Option("--plots", help="Draw confusion matrices to this PNG.", metavar="FILE"),
-    ] = None,
+    plots: Annotated[Path | None, output("--plots", "Draw confusion matrices to this PNG.")] = None,
     force: Force = False,
     debug: Debug = False,  # noqa: ARG001
 ) -> None:

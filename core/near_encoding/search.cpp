@@ -177,15 +177,24 @@ MOCAPRESS_IN_PLACE Cut block_with(Coder& coder, const Plan& plan, const Target& 
   return cut;
 }
 
-MOCAPRESS_WIDE [[gnu::flatten]] Cut wide_block(Coder& coder, const Plan& plan, const Target& target,
-                                               const Around& around, int start, int length,
-                                               double last) {
-  return block_with<Wide>(coder, plan, target, around, start, length, last);
+template <class Vector>
+MOCAPRESS_WIDE MOCAPRESS_FLATTEN Cut wide_block(Coder& coder, const Plan& plan,
+                                                const Target& target, const Around& around,
+                                                int start, int length, double last) {
+  return block_with<Vector>(coder, plan, target, around, start, length, last);
 }
 
-[[gnu::flatten]] Cut narrow_block(Coder& coder, const Plan& plan, const Target& target,
-                                  const Around& around, int start, int length, double last) {
+MOCAPRESS_FLATTEN Cut narrow_block(Coder& coder, const Plan& plan, const Target& target,
+                                   const Around& around, int start, int length, double last) {
   return block_with<Narrow>(coder, plan, target, around, start, length, last);
+}
+
+Cut best_block(Coder& coder, const Plan& plan, const Target& target, const Around& around,
+               int start, int length, double last) {
+  if constexpr (kMayBeWide) {
+    if (is_wide()) return wide_block<Wide>(coder, plan, target, around, start, length, last);
+  }
+  return narrow_block(coder, plan, target, around, start, length, last);
 }
 
 }  // namespace
@@ -193,8 +202,7 @@ MOCAPRESS_WIDE [[gnu::flatten]] Cut wide_block(Coder& coder, const Plan& plan, c
 Cut search(Coder& coder, std::size_t i, const Plan& plan, const Target& target, const Block* before,
            int start, int length, double last) {
   const Around around = coder.around(i, before, start, length);
-  Cut whole = is_wide() ? wide_block(coder, plan, target, around, start, length, last)
-                        : narrow_block(coder, plan, target, around, start, length, last);
+  Cut whole = best_block(coder, plan, target, around, start, length, last);
   if (length <= kShortest) return whole;
   const int chance = Mixing<Narrow>::chance(coder.splits.at(split_context(around, length)), 0);
   whole.cost += target.bit_cost * bits_of(chance, false);

@@ -99,4 +99,4 @@ def test_the_command_writes_table_and_plot(samples: Path, tmp_path: Path) -> Non
     assert "| CurveCodec 2, as stated | p=0.1cm | 3.5" in table
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
     words[words.index("zfp")] = "zfq"
-    assert "no contender zfq" in CliRunner().invoke(app, words).output
+    assert "no contender zfq" in CliRunner().invoke(app, [*words, "--force"]).output

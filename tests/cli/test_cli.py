@@ -355,6 +355,10 @@ def test_bench_writes_rows_for_machines(samples: Path, tmp_path: Path) -> None:
         assert row["exact"]
         assert row["compressed_bytes"] == row["payload_bytes"] + row["header_bytes"]
     assert "| gzip -9 |" in result.stdout
+    again = mocapress("bench", "lossless", samples, "--json", tmp_path / "rows.json")
+    assert again.exit_code == 2
+    assert "rows.json: file exists; --force overwrites it" in again.stderr
+    assert again.stdout == ""
 
 
 def test_bench_counts_what_compress_makes(samples: Path, tmp_path: Path) -> None:

@@ -69,7 +69,7 @@ def test_a_lossy_file_says_what_it_lost(tmp_path: Path) -> None:
     assert f"PSNR {facts['psnr']:.1f} dB" in told
     apart = mp.positions(mp.read(WALK)) - mp.positions(mp.load(lossy))
     joints = np.linalg.norm(apart, axis=-1).max()
-    assert f"joints off by up to {joints:.3g} units of length" in told
+    assert f"joints off by up to {joints:.3g} cm" in told
     verified = json.loads(mocapress("verify", lossy, "--json").stdout)[0]["loss"]
     assert verified["codec"] == "diffma:bound=8.0"
     assert float(verified["largest_error"]) == pytest.approx(facts["largest_error"], rel=1e-5)

@@ -227,6 +227,8 @@ def test_info_tells_the_errors(samples: Path, tmp_path: Path) -> None:
     assert told["largest_joint_error"] == pytest.approx(errors.max(), rel=0.01)
     assert told["mean_joint_error"] == pytest.approx(errors.mean(), rel=0.01)
     assert told["largest_joint_error"] >= errors.max()
+    bare = replace(clip, skeleton=None)  # as an AMC has it
+    assert "largest_joint_error" in codec.measure(bare, encoded, 1)
 
 
 CODEC = "near:max=0.1cm"
@@ -249,6 +251,13 @@ CODEC = "near:max=0.1cm"
 def test_odd_clips_keep_the_bound(clip: Clip) -> None:
     errors = joint_errors(clip, decoded_by(mp.codec(CODEC), clip), 3)
     assert errors.max() <= 0.1
+
+
+def test_a_figure_without_frames_comes_back(samples: Path) -> None:
+    for clip in (arm(5)[:0], mp.read(samples / "cmu_01_01.amc")[:0]):
+        for asked in ("max=0.1cm", "quality=3", "rate=2"):
+            back = decoded_by(mp.codec(f"near:{asked}"), clip)
+            assert back.values.shape == (0, clip.channels)
 
 
 def test_jumps_keep_the_bound() -> None:

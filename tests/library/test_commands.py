@@ -80,6 +80,32 @@ def test_export_and_import_code_nothing_again(filled: Path, tmp_path: Path) -> N
     assert mocapress("library", "import", second, out).exit_code == 1
 
 
+def test_what_is_imported_is_stored_once(samples: Path, tmp_path: Path) -> None:
+    packed, path = tmp_path / "packed", tmp_path / "lib.mocapdb"
+    names = [BVH, AMC, "markers.c3d"]
+    for folder, level in (("a", 1), ("b", 6)):
+        for name in names:
+            (packed / folder).mkdir(parents=True, exist_ok=True)
+            blob = mp.compress(samples / name, codec=f"exact:level={level}", notes={"by": folder})
+            (packed / folder / f"{name}.mcz").write_bytes(blob)
+    done = mocapress("library", "import", path, packed, "--json")
+    rows = {row["file"]: row for row in json.loads(done.output)}
+    for file, row in rows.items():
+        assert row["frames_shared"] == ("/b/" in file) * row["frames"]
+        assert (row["stored_bytes"] == 0) == ("/b/" in file)
+    assert path.stat().st_size < 0.6 * sum(p.stat().st_size for p in packed.rglob("*.mcz")) + 60_000
+    with mp.open_library(path, "a") as library:
+        for name in names:
+            data = (samples / name).read_bytes()
+            assert library.read_bytes(f"b/{name}") == data
+            assert library[f"b/{name}"].notes["by"] == "b"
+            # What has lost its source is coded anew, and what is exported needs nobody.
+            library.remove(f"a/{name}")
+            assert library.read_bytes(f"b/{name}") == data
+            assert mp.decompress(library.read_mcz(f"b/{name}")) == data
+        assert not library.verify()
+
+
 def test_extracting_overwrites_nothing_unasked(filled: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     mocapress("library", "extract", filled, "-o", out)
@@ -192,6 +218,40 @@ def test_progress_needs_no_terminal(filled: Path, samples: Path, tmp_path: Path)
     (row,) = json.loads(done.stdout)
     assert (row["state"], row["frames"], row["frames_shared"]) == ("added", 69, 69)
     assert done.stderr == b""
+
+
+def test_frames_are_those_of_the_first_stream(samples: Path, tmp_path: Path) -> None:
+    path = tmp_path / "lib.mocapdb"
+    for folder in ("a", "b"):  # points, and analog channels at another rate
+        done = mocapress("library", "add", path, samples / "markers.c3d", "--into", folder)
+    assert "300 of 300 frames were there" in done.output
+    for words in ([], ["b/markers.c3d"]):
+        (told,) = json.loads(mocapress("library", "info", path, *words, "--json").output)
+        assert told["frames_shared"] == 300
+
+
+def test_what_a_clip_is_warned_of_is_one_line(samples: Path, tmp_path: Path) -> None:
+    lines = (samples / BVH).read_text().splitlines()
+    lines[-1] = "nan " + lines[-1].split(maxsplit=1)[1]
+    (tmp_path / "odd.bvh").write_text("\n".join(lines))
+    path = tmp_path / "lib.mocapdb"
+    mocapress("library", "add", path, tmp_path / "odd.bvh", samples / BVH)
+    done = process("search", path, tmp_path / "odd.bvh", "--frames", "0:40")
+    assert done.returncode == 0
+    told = done.stderr.decode().splitlines()
+    assert len(told) == 1
+    assert told[0].startswith("mocapress: warning: ")
+
+
+def test_a_reader_that_has_seen_enough_is_no_fault(filled: Path) -> None:
+    for words in (["library", "list", filled], ["search", filled, "cmu/01.amc"]):
+        running = started(*words, env={**os.environ, "PYTHONUNBUFFERED": "1"})
+        assert running.stdout is not None
+        assert running.stderr is not None
+        running.stdout.close()
+        assert running.stderr.read() == b""
+        running.stderr.close()
+        running.wait()
 
 
 def test_a_library_may_go_without_an_index(tmp_path: Path, samples: Path) -> None:

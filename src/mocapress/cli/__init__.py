@@ -4,15 +4,18 @@ import errno
 import io
 import os
 import sys
+import warnings
 
 
 def main() -> None:
     """Run the command line; no traceback reaches a user who has not asked for one."""
     from mocapress.cli.app import app
+    from mocapress.cli.warned import say_at_once
 
     if isinstance(sys.stdout, io.TextIOWrapper):
         # Names of files need not be UTF-8: they go out as they came in.
         sys.stdout.reconfigure(errors="surrogateescape")
+    warnings.showwarning = say_at_once
     debug = "--debug" in sys.argv[1:]
     try:
         try:
@@ -24,16 +27,10 @@ def main() -> None:
             _end_stdout(error)
         if debug:
             raise
-        if isinstance(error, OSError) and isinstance(error.filename, str):
-            # A path that cannot be looked at: a folder without permission, a name too long.
-            print(f"mocapress: {error.filename}: {error.strerror}", file=sys.stderr)
-            sys.exit(1)
-        print(
-            f"mocapress: a defect of mocapress: {type(error).__name__}: {error}; "
-            "--debug shows where",
-            file=sys.stderr,
-        )
-        sys.exit(70)
+        from mocapress.cli.report import is_defect, message, say
+
+        say(message(error, ""))
+        sys.exit(70 if is_defect(error) else 1)
 
 
 def _end_stdout(error: OSError) -> None:

@@ -187,6 +187,7 @@ def compress(
         facts["largest_joint_error"] = loss.joints if loss else None
         facts["largest_marker_error"] = loss.markers if loss else None
         facts["largest_joint_error_of"] = dict(loss.parts) if loss else {}
+        facts["centimetres_per_unit"] = loss.centimetres if loss else None
         facts["psnr"] = loss.psnr if loss and isfinite(loss.psnr) else None
         job.outputs[job.target] = blob
         job.remove = remove

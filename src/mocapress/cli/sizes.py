@@ -12,11 +12,13 @@ def show_sizes(job: Job) -> None:
         errors = f"; lossy: largest error {lost:.3g}, mean {job.result['mean_error']:.3g}"
         if job.result["psnr"] is not None:
             errors += f", PSNR {job.result['psnr']:.1f} dB"
+        centimetres = job.result["centimetres_per_unit"]
+        by, unit = (centimetres, "cm") if centimetres else (1.0, "units of length")
         for point in ("joint", "marker"):
             if (most := job.result[f"largest_{point}_error"]) is not None:
-                errors += f"; {point}s off by up to {most:.3g} units of length"
+                errors += f"; {point}s off by up to {most * by:.3g} {unit}"
         parts = job.result["largest_joint_error_of"]
-        errors += "".join(f", {part} by {most:.3g}" for part, most in parts.items())
+        errors += "".join(f", {part} by {most * by:.3g} {unit}" for part, most in parts.items())
     print(f"{job.target}: {_sizes([job])}{errors}")
 
 

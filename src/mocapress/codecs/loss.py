@@ -12,6 +12,7 @@ from mocapress.codecs.markers import markers_of
 from mocapress.errors import UnsupportedError, VerificationError
 from mocapress.motion import Clip, Column
 from mocapress.motion.comparing import distances_of, errors_of
+from mocapress.motion.figure import centimetres
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +32,8 @@ class Loss:
     """Largest distance of a marker from its place."""
     parts: Mapping[str, float] = field(default_factory=dict)
     """The same of parts of the body that have bounds of their own."""
+    centimetres: float | None = None
+    """In the unit of these distances; None where nothing says so."""
 
     @classmethod
     def of(
@@ -95,6 +98,10 @@ def checked_loss(codec: Codec, clip: Clip, decoded: NDArray[np.float64]) -> Loss
     largest = _largest_distances(clip, decoded)
     if largest is None:
         return loss
+    if clip.skeleton is None:
+        loss = replace(loss, centimetres=markers_of(clip.columns).centimetres(clip.columns))
+    else:
+        loss = replace(loss, centimetres=centimetres(clip))
     most = float(largest.max(initial=0))
     parts = {part: float(largest[joints].max()) for part, joints in codec.parts_of(clip).items()}
     if clip.skeleton is None:

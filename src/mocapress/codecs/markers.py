@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.motion import Column
+from mocapress.motion.units import centimetres_in
 
 Array = NDArray[np.float64]
 _COLUMNS_PER_NODE = 6
@@ -34,6 +35,11 @@ class Markers:
     def columns(self) -> list[int]:
         """The columns of all markers."""
         return [c + i for c in self.first for i in range(3)]
+
+    def centimetres(self, columns: Sequence[Column]) -> float | None:
+        """Give the unit of their places in centimetres; None where columns do not say one."""
+        units = {centimetres_in(columns[c].unit) for c in self.columns}
+        return units.pop() if len(units) == 1 else None
 
 
 def markers_of(columns: Sequence[Column]) -> Markers:

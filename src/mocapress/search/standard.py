@@ -12,7 +12,7 @@ from mocapress.errors import UnsupportedError
 from mocapress.motion import Clip
 from mocapress.motion.kinematics import positions
 from mocapress.motion.standard_joints import JOINTS, REQUIRED, SIDED, by_mapping, by_names
-from mocapress.search.topology import by_topology
+from mocapress.search.topology import by_topology, head_between
 
 Array = NDArray[np.float64]
 
@@ -28,12 +28,15 @@ _FAR = 1e9
 """Length units; what is farther away would not be compared in floating point."""
 _SMOOTH = 5.0
 """Frames at 30 Hz over which the heading is smoothed (standard deviation)."""
-_USUAL_Y = 1.2
-"""How much longer a body must be along z than along y to be taken to stand along z."""
+_USUAL_Y, _KNOWN_Y = 1.2, 3.0
+"""How much longer a body must be along z than along y to be taken to stand along z, and how much
+where its rest pose stands along y: who lies or crawls is long along z, too."""
 _JUMP = 0.15
 """Leg lengths in a frame: hips that move farther, and so only there, were put elsewhere."""
 _SUDDEN = 4.0
 """How many times as far as two frames before and behind: some ten times gravity."""
+_LOOKED_AT = 64
+"""Frames by which joints are found where names do not tell, about so many."""
 _AT = {joint: index for index, joint in enumerate(JOINTS)}
 _LEGS = [[_AT[f"{side}_{joint}"] for joint in SIDED[3:]] for side in ("left", "right")]
 
@@ -100,7 +103,7 @@ def standard_motion(
     Parameters
     ----------
     clip
-        With a skeleton, in any units; y up, or z where bodies are much longer along it.
+        With a skeleton, in any units; y up or down, or z where bodies are much longer along it.
     mapping
         Names of standard joints to names in the skeleton, for joints that are not found otherwise.
     rate
@@ -112,7 +115,7 @@ def standard_motion(
         When the mapping names what is not there.
     UnsupportedError
         When there is no skeleton, or bones stretch; when joints are missing, which are named; when
-        there are no frames, or less than one a second, or a place is not a usable number.
+        there are no frames, or less than one a second, or a joint's place is never a usable number.
 
     """
     if clip.skeleton is None:
@@ -135,27 +138,34 @@ def standard_motion(
     if (part < 1e-6).all():
         needed = before
     all_places = positions(clip.with_frames(clip.values[needed], clip.frame_time))
-    if not (np.abs(all_places) < _FAR).all():
-        what = "search needs places that are numbers, none of them huge"
-        raise UnsupportedError(what, file=_name(clip))
-    found = _correspondence(clip, mapping, all_places[0])
+    usable = (np.abs(all_places) < _FAR).all(axis=(1, 2))
+    found = _correspondence(clip, mapping, all_places[usable])
     places = _sixteen(all_places, found)
+    if not usable.all():
+        places = _without_gaps(places, needed, _name(clip))
     if needed is not before:
         low = np.searchsorted(needed, before)
         high = np.searchsorted(needed, np.minimum(before + 1, clip.frames - 1))
         share = part[:, None, None]
         places = places[low] * (1 - share) + places[high] * share
-    return _standing(places, _name(clip))
+    return _standing(places, _KNOWN_Y if _rests_along_y(clip, found) else _USUAL_Y, _name(clip))
 
 
 def _correspondence(clip: Clip, mapping: Mapping[str, str] | None, places: Array) -> dict[str, int]:
     assert clip.skeleton is not None
     own = by_mapping(clip.skeleton, mapping or {})
     named = by_names(clip.skeleton) | own
+    arms = [named[joint] for joint in ("left_shoulder", "right_shoulder") if joint in named]
+    if "head" not in named and len(arms) == 2:
+        head = head_between(clip.skeleton, arms)
+        named |= {} if head is None else {"head": head}
     missing = [joint for joint in REQUIRED if joint not in named]
     if not missing:
         return named
-    found = by_topology(clip.skeleton, places) | own
+    if not len(places):
+        what = "search needs frames in which all places are numbers, none of them huge"
+        raise UnsupportedError(what, file=_name(clip))
+    found = by_topology(clip.skeleton, places[:: 1 + len(places) // _LOOKED_AT]) | own
     if all(joint in found for joint in REQUIRED):
         return found
     raise UnsupportedError(
@@ -165,6 +175,20 @@ def _correspondence(clip: Clip, mapping: Mapping[str, str] | None, places: Array
         found=" ".join(clip.skeleton.names[:20])
         + (" ..." if len(clip.skeleton.names) > 20 else ""),
     )
+
+
+def _without_gaps(places: Array, frames: NDArray[np.intp], name: str | None) -> Array:
+    """Give (F, 16, 3) with places that are no usable numbers on the way between those around."""
+    usable: NDArray[np.bool_] = np.all(np.abs(places) < _FAR, axis=2)
+    if not usable.any(axis=0).all():
+        what = "search needs places that are numbers, none of them huge"
+        raise UnsupportedError(what, file=name)
+    for joint in np.flatnonzero(~usable.all(axis=0)):
+        good = usable[:, joint]
+        for axis in range(3):
+            known = places[good, joint, axis]
+            places[:, joint, axis] = np.interp(frames, frames[good], known)
+    return places
 
 
 def _sixteen(places: Array, found: Mapping[str, int]) -> Array:
@@ -181,12 +205,36 @@ def _sixteen(places: Array, found: Mapping[str, int]) -> Array:
     return made
 
 
-def _standing(places: Array, name: str | None) -> StandardMotion:
+def _rests_along_y(clip: Clip, found: Mapping[str, int]) -> bool:
+    """Say whether the body stands along y where all channels are left out."""
+    resting = positions(Clip.of(np.zeros((1, 0)), (), None, clip.skeleton))
+    _, y, z = np.abs(_height(_sixteen(resting, found)))
+    return bool(y > _USUAL_Y * z)
+
+
+def _height(places: Array) -> Array:
+    """Give the mean way from the ankles to the head: (3,)."""
+    ankles = places[:, [leg[2] for leg in _LEGS]].mean(axis=1)
+    height: Array = (places[:, _AT["head"]] - ankles).mean(axis=0)
+    return height
+
+
+def _upright(places: Array, least_z: float) -> Array:
+    """Turn a body so that y is up."""
+    _, y, z = _height(places)
+    if abs(z) > least_z * abs(y):
+        places = places[..., [0, 2, 1]] * ((1, 1, -1) if z > 0 else (1, -1, 1))
+    elif y < 0:
+        # Heads are down in handstands as well, but there the hands are lower still.
+        wrists = places[:, [_AT["left_wrist"], _AT["right_wrist"]], 1].mean()
+        if wrists > places[:, _AT["head"], 1].mean():
+            places = places * (1, -1, -1)
+    return places
+
+
+def _standing(places: Array, least_z: float, name: str | None) -> StandardMotion:
+    places = _upright(places, least_z)
     ankles = places[:, [leg[2] for leg in _LEGS]]
-    tall = np.abs((places[:, _AT["head"]] - ankles.mean(axis=1)).mean(axis=0))
-    if tall[2] > _USUAL_Y * tall[1]:
-        places = places[..., [0, 2, 1]] * (1, 1, -1)
-        ankles = ankles[..., [0, 2, 1]] * (1, 1, -1)
     bones = np.linalg.norm(np.diff(places[:, _LEGS], axis=2), axis=-1).sum(axis=2)
     leg = float(np.median(bones))
     if not leg > float(np.abs(places).max()) / _FAR:

@@ -20,6 +20,7 @@ from mocapress.codecs.contract import (
     Model,
     Others,
 )
+from mocapress.codecs.markers import markers_of
 from mocapress.codecs.near.encoding import Encoder
 from mocapress.codecs.near.figure import figure_of
 from mocapress.codecs.near.goal import Goal, goal_of
@@ -179,5 +180,6 @@ class Near(Codec):
     def measure(self, clip: Clip, encoded: Encoded, raw_bytes: int) -> dict[str, float]:
         """Give the errors that the encoder found: of joints, in units of length, or of values."""
         in_space, mean, largest = unpack_errors(encoded.header)
-        of = "value" if not in_space else "joint" if clip.skeleton else "marker"
+        has_markers = clip.skeleton is None and markers_of(clip.columns).first
+        of = "value" if not in_space else "marker" if has_markers else "joint"
         return {f"mean_{of}_error": mean, f"largest_{of}_error": largest}

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mocapress.codecs.markers import Markers, kept_of, markers_of
 from mocapress.motion import Column, Joint, Skeleton
-from mocapress.motion.units import centimetres_in, centimetres_per_unit, figure_size
+from mocapress.motion.units import centimetres_per_unit, figure_size
 
 Array = NDArray[np.float64]
 RADIUS = 3.0
@@ -64,8 +64,7 @@ def _figure_of_markers(columns: Sequence[Column], values: Array) -> Figure | Non
     for index, first in enumerate(markers.first):
         for c in range(first, first + 3):
             moving[c] = replace(moving[c], joint=index, kind=f"t{moving[c].kind}")
-    units = {centimetres_in(columns[c].unit) for c in markers.columns}
-    unit = units.pop() if len(units) == 1 else None
+    unit = markers.centimetres(columns)
     places = _places(markers, values)
     size = 0.0
     if places.size and np.isfinite(places).any():
