@@ -21,7 +21,9 @@ USUAL_LEVEL: Final = 5
 """Which a header need not name; as in core/exact/codec.hpp and viewer/mcz/decoding.js."""
 
 
-def pack_header(roles: Roles, told: Told, *, has_model: bool, level: int, asked: int) -> bytes:
+def pack_header(
+    roles: Roles, told: Told, *, has_model: bool, level: int = USUAL_LEVEL, asked: int = USUAL_LEVEL
+) -> bytes:
     """Make the header of a clip with these roles, coded with a model or without.
 
     ``asked`` is the level that was asked for.
