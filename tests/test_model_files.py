@@ -131,6 +131,21 @@ def test_a_damaged_model_is_found_out(packed: Path, model: mp.Model) -> None:
         mp.decompress(packed)
 
 
+def test_a_sound_copy_serves_where_another_is_damaged(
+    packed: Path, model: mp.Model, walk: bytes, tmp_path: Path
+) -> None:
+    sound = tmp_path / "model.mcm"
+    mp.save_model(model, sound)
+    damaged = bytearray(sound.read_bytes())
+    damaged[-5] ^= 1
+    (packed.parent / "a.mcm").write_bytes(damaged)
+    (packed.parent / "a_copy.mcm").write_bytes(damaged)
+    with pytest.raises(mp.CorruptError):
+        mp.decompress(packed)
+    (packed.parent / "b.mcm").write_bytes(sound.read_bytes())
+    assert mp.decompress(packed) == walk
+
+
 def test_models_are_for_their_codec(model: mp.Model, walk: bytes, packed: Path) -> None:
     with pytest.raises(mp.ParameterError, match="codec app takes no model"):
         mp.compress(walk, "app", model=model)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-slp-vectorize")  // see blocks.cpp
@@ -44,16 +43,17 @@ Prediction::Prediction(std::vector<std::vector<std::size_t>> sources,
                        const std::vector<double>& steps, const std::vector<double>& firsts,
                        double caution)
     : channels_(sources.size()), caution_(caution) {
+  std::size_t places = 0;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Own& own = channels_[i];
     own.sources = std::move(sources[i]);
     own.step = steps[i];
     own.last = firsts[i];
     std::fill_n(own.past, kReach + 1, firsts[i]);
-    const std::size_t features = 2 * own.sources.size();
-    own.products.assign(filled(features) * filled(features), 0.0);
-    own.targets.assign(filled(features), 0.0);
+    own.place = places;
+    places += own.sources.size() * (own.sources.size() + 3) / 2;
   }
+  equations_.assign(4 * places, 0.0);
 }
 
 void Prediction::assume(const std::vector<Assumed>& all, double observations,
@@ -64,20 +64,22 @@ void Prediction::assume(const std::vector<Assumed>& all, double observations,
   };
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Own& own = channels_[i];
-    const std::size_t m = 2 * own.sources.size(), next = filled(m);
-    for (std::size_t a = 0; a < m; a += 2) {
-      const std::size_t source = own.sources[a / 2];
+    const std::size_t count = own.sources.size();
+    double* const targets = equations_.data() + 4 * own.place;
+    double* square_at = targets + 4 * count;
+    for (std::size_t a = 0; a < count; square_at += 4 * (count - a), ++a) {
+      const std::size_t source = own.sources[a];
       const std::array place{columns[i], columns[source]};
       const auto found = std::lower_bound(all.begin(), all.end(), place, before);
       if (found == all.end() || std::array{found->channel, found->source} != place) continue;
       const double ratio = channels_[source].step / own.step;
       const double square = observations * (ratio * ratio), once = observations * ratio;
       const auto& [one, other] = found->shares;
-      own.products[a * next + a] = square * found->moved;
-      own.products[a * next + a + 1] = square * found->both;
-      own.products[(a + 1) * next + a + 1] = square * found->averaged;
-      own.targets[a] = once * (found->moved * one + found->both * other);
-      own.targets[a + 1] = once * (found->both * one + found->averaged * other);
+      square_at[0] = square * found->moved;
+      square_at[1] = square_at[2] = square * found->both;
+      square_at[3] = square * found->averaged;
+      targets[4 * a] = once * (found->moved * one + found->both * other);
+      targets[4 * a + 1] = once * (found->both * one + found->averaged * other);
     }
   }
   seen_ = observations;
@@ -88,11 +90,20 @@ void Prediction::begin_span(int length) { length_ = static_cast<std::size_t>(len
 
 void Prediction::predict(std::size_t i, double* curve) {
   const Own& own = channels_[i];
-  const std::size_t m = 2 * own.sources.size(), next = filled(m);
+  const std::size_t m = 2 * own.sources.size(), next = filled(m + 1);
   bool solved = m > 0 && seen_ > 0;
   if (solved) {
-    scratch_ = own.products;
-    shares_ = own.targets;
+    scratch_.assign(m * next, 0.0);
+    shares_.resize(m);
+    const double* from = equations_.data() + 4 * own.place;
+    for (std::size_t a = 0; a < m; ++a) scratch_[a * next + m] = from[2 * (a - a % 2) + a % 2];
+    from += 2 * m;
+    for (std::size_t a = 0; a < m; a += 2) {
+      for (std::size_t b = a; b < m; b += 2, from += 4) {
+        std::copy_n(from, 2, &scratch_[a * next + b]);
+        std::copy_n(from + 2, 2, &scratch_[(a + 1) * next + b]);
+      }
+    }
     for (std::size_t a = 0; a < m; ++a) {
       const double step = channels_[own.sources[a / 2]].step;
       double& entry = scratch_[a * next + a];
@@ -134,41 +145,64 @@ void Prediction::tell(std::size_t i, const double* values, const double* rest) {
 
 void Prediction::end_span(std::size_t frames) {
   for (std::size_t group = 0; (group + 1) * kGroup <= frames; ++group) {
+    if (uses_.empty()) find_uses();
     find_waves(group * kGroup);
-    for (std::size_t i = 0; i < channels_.size(); ++i) learn(i);
+    weigh_bands();
+    add_products(move_waves_.data(), uses_, weights_.data(), equations_.data());
     seen_ += static_cast<double>(kWaves);
   }
   seen_ = seen_ * kFade;
+  for (double& each : equations_) each *= kFade;
   for (Own& own : channels_) {
-    for (double& product : own.products) product *= kFade;
-    for (double& target : own.targets) target *= kFade;
     for (std::size_t k = 0; k <= kReach; ++k) own.past[k] = own.values[length_ - 1 - kReach + k];
     own.last = own.values[length_ - 1];
   }
 }
 
+// Which products make the equations of all channels.
+void Prediction::find_uses() {
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const Own& own = channels_[i];
+    std::size_t place = own.place;
+    const auto use = [&](std::size_t row, std::size_t column) {
+      uses_.push_back({static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(column),
+                       static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(place++)});
+    };
+    for (const std::size_t source : own.sources) use(i, source);
+    for (std::size_t a = 0; a < own.sources.size(); ++a) {
+      for (std::size_t b = a; b < own.sources.size(); ++b) use(own.sources[a], own.sources[b]);
+    }
+  }
+  sort_uses(uses_, channels_.size());
+}
+
 // The waves of a group of frames, from `start` on.
 void Prediction::find_waves(std::size_t start) {
+  constexpr std::size_t kHalf = kGroup / 2;
   const std::size_t moving = filled(2 * channels_.size());
   moves_.assign(kGroup * moving, 0.0);
   rest_of_.clear();
   std::size_t count = 0;
+  const auto put = [&](std::vector<double>& rows, std::size_t column,
+                       const std::vector<double>& numbers) {
+    double* const own = &rows[column / kFill * kFill * kGroup + column % kFill];
+    for (std::size_t t = 0; t < kHalf; ++t) {
+      const double one = numbers[start + t], other = numbers[start + kGroup - 1 - t];
+      own[t * kFill] = one + other;
+      own[(kHalf + t) * kFill] = one - other;
+    }
+  };
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const Own& own = channels_[i];
-    for (std::size_t t = 0; t < kGroup; ++t) {
-      moves_[t * moving + 2 * i] = own.moved[start + t];
-      moves_[t * moving + 2 * i + 1] = own.averaged[start + t];
-    }
+    put(moves_, 2 * i, own.moved);
+    put(moves_, 2 * i + 1, own.averaged);
     rest_of_.push_back(count);
     if (!own.rests) ++count;
   }
   const std::size_t resting = filled(count);
   rests_.assign(kGroup * resting, 0.0);
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if (channels_[i].rests) continue;
-    for (std::size_t t = 0; t < kGroup; ++t) {
-      rests_[t * resting + rest_of_[i]] = channels_[i].rest[start + t];
-    }
+    if (!channels_[i].rests) put(rests_, rest_of_[i], channels_[i].rest);
   }
   move_waves_.resize(kWaves * moving);
   rest_waves_.resize(kWaves * resting);
@@ -176,36 +210,26 @@ void Prediction::find_waves(std::size_t start) {
   waves_of(rests_.data(), resting, rest_waves_.data());
 }
 
-// Adds to the normal equations of a channel what the waves of a group of frames show.
-void Prediction::learn(std::size_t i) {
-  Own& own = channels_[i];
-  const std::size_t m = 2 * own.sources.size(), next = filled(m);
-  if (m == 0) return;
-  const std::size_t moving = move_waves_.size() / kWaves, resting = rest_waves_.size() / kWaves;
-  std::array<double, kWaves + 4> squares{};
-  for (std::size_t k = 0; k < kWaves && !own.rests; ++k) {
-    const double wave = rest_waves_[k * resting + rest_of_[i]];
-    squares[k + 2] = wave * wave;
-  }
-  features_.resize(kWaves * next);
-  weighed_.resize(kWaves * next);
-  std::array<double, kWaves> aims;
-  for (std::size_t k = 0; k < kWaves; ++k) {
-    double energy = 0;
-    for (std::size_t j = k; j < k + 5; ++j) energy += squares[j];
-    const double weight = 1 / (own.step * own.step + energy / 5);
-    const double* const waves = &move_waves_[k * moving];
-    double* const feature = &features_[k * next];
-    double* const weighed = &weighed_[k * next];
-    for (std::size_t a = 0; a < m; a += 2) {
-      std::memcpy(feature + a, waves + 2 * own.sources[a / 2], 2 * sizeof(double));
+// What waves count in the equations of each channel: the less, the more its rest has of their band.
+void Prediction::weigh_bands() {
+  weights_.resize(channels_.size() * kWaveBands);
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const Own& own = channels_[i];
+    const std::size_t column = rest_of_[i];
+    const double* const waves =
+        rest_waves_.data() + column / kFill * kFill * kWaves + column % kFill;
+    std::size_t k = 0;
+    for (std::size_t band = 0; band < kWaveBands; ++band) {
+      const std::size_t first = k;
+      double energy = 0;
+      for (; k < kBandEnds[band]; ++k) {
+        const double wave = own.rests ? 0 : waves[k * kFill];
+        energy += wave * wave;
+      }
+      weights_[i * kWaveBands + band] =
+          1 / (own.step * own.step + energy / static_cast<double>(k - first));
     }
-    for (std::size_t a = m; a < next; ++a) feature[a] = 0;
-    for (std::size_t a = 0; a < next; ++a) weighed[a] = weight * feature[a];
-    aims[k] = waves[2 * i];
   }
-  add_products(features_.data(), weighed_.data(), aims.data(), next, own.products.data(),
-               own.targets.data());
 }
 
 }  // namespace mocapress::near

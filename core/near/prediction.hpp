@@ -54,23 +54,27 @@ class Prediction {
     // Its values in the span; these and averages, less those of the frame before the span.
     std::vector<double> values, rest, moved, averaged;
     bool rests = true;  // whether its rest is 0 throughout the span
-    // Of the normal equations: the upper half, in rows of filled(features), and the right side.
-    std::vector<double> products, targets;
+    // Where its part of the normal equations begins: four numbers of it and each source, of which
+    // the first two are the right side; then of each source and each from it on, a square of the
+    // matrix.
+    std::size_t place = 0;
   };
 
+  void find_uses();
   void find_waves(std::size_t start);
-  void learn(std::size_t i);
+  void weigh_bands();
 
   std::vector<Own> channels_;
   double caution_ = 0;
   std::size_t length_ = 0;
-  double seen_ = 0;  // observations, which fade
+  double seen_ = 0;                // observations, which fade
+  std::vector<double> equations_;  // of all channels
+  std::vector<Use> uses_;          // of products, by which equations grow; none before they do
   // Of a group of frames, in rows: what all channels moved and what their averages did, side by
   // side, and the rest of those that do not rest; and the waves of these.
   std::vector<double> moves_, rests_, move_waves_, rest_waves_;
   std::vector<std::size_t> rest_of_;  // of each channel: its column in rests_
-  // Of a channel: its features, a row for each wave, and these weighed.
-  std::vector<double> features_, weighed_;
+  std::vector<double> weights_;       // of each channel's bands
   std::vector<double> scratch_, shares_;
   std::vector<const double*> curves_;
 };

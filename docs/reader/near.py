@@ -2,6 +2,7 @@
 
 import math
 import struct
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 from exact_functions import sine_cosine
@@ -446,27 +447,34 @@ class Foretelling:
     def learn(self, i: int, waves: list[list[list[float]]], sources: list[list[float]]) -> None:
         """Add what 64 frames show of a channel."""
         target, rest, step = waves[i][0], waves[i][2], self.channels[i].step
-        for k in range(63):
-            energy = 0.0
-            for j in range(max(0, k - 2), min(62, k + 2) + 1):
-                energy += rest[j] * rest[j]
-            weight = 1 / (step * step + energy / 5)
+        first = 0
+        for end in (1, 2, 3, 5, 8, 12, 20, 32, 63):
+            band = range(first, end)
+            first = end
+            weight = 1 / (step * step + total(rest[k] * rest[k] for k in band) / len(band))
             for a, source in enumerate(sources):
-                weighed = weight * source[k]
-                self.targets[i][a] += weighed * target[k]
+                self.targets[i][a] += weight * total(target[k] * source[k] for k in band)
                 for b in range(a + 1):
-                    self.products[i][a][b] += weighed * sources[b][k]
+                    sums = total(source[k] * sources[b][k] for k in band)
+                    self.products[i][a][b] += weight * sums
+
+
+def total(numbers: Iterable[float]) -> float:
+    """Add numbers one after the other, as `sum` does not in every version of Python."""
+    added = 0.0
+    for number in numbers:
+        added += number
+    return added
 
 
 def waves_of(numbers: list[float]) -> list[float]:
     """Give the waves 1 to 63 of 64 numbers."""
-    waves = []
-    for k in range(1, 64):
-        total = 0.0
-        for t, number in enumerate(numbers):
-            total += COSINES[k * (2 * t + 1) % 256] * number
-        waves.append(total)
-    return waves
+    pairs = list(zip(numbers[:32], numbers[:31:-1], strict=True))
+    halves = [[a + b for a, b in pairs], [a - b for a, b in pairs]]
+    return [
+        total(COSINES[k * (2 * t + 1) % 256] * number for t, number in enumerate(halves[k % 2]))
+        for k in range(1, 64)
+    ]
 
 
 COSINES = [math.sqrt(2.0 / 64) * sine_cosine(3.141592653589793 * i / 128)[1] for i in range(256)]

@@ -129,26 +129,32 @@ def find_model(digest: bytes, places: Iterable[Place], folder: Path | None = Non
     MissingModelError
         When it is nowhere; says where it was looked for.
     CorruptError
-        When it is damaged.
+        When it is there, and damaged.
 
     """
     named = os.environ.get(FOLDERS_VARIABLE, "").split(os.pathsep)
     folders = ([folder] if folder else []) + [Path(name) for name in named if name]
     looked: list[Place] = [*places, *folders]
     others: list[str] = []
+    damaged: MocapressError | None = None
     for place in looked:
         if isinstance(place, Model):
-            model = place
+            found: Iterable[Path | Model] = [place]
         elif Path(place) in folders or Path(place).is_dir():
-            file = _in_folder(digest, Path(place), others)
-            if file is None:
-                continue
-            model = load_model(file)
+            found = _in_folder(digest, Path(place), others)
         else:
-            model = load_model(place)
-        if model.digest == digest:
-            return model
-        others.append(_name(place))
+            found = [load_model(place)]
+        for one in found:
+            try:
+                model = one if isinstance(one, Model) else load_model(one)
+            except MocapressError as error:
+                damaged = damaged or error  # there may be a sound copy elsewhere
+                continue
+            if model.digest == digest:
+                return model
+            others.append(_name(place))
+    if damaged is not None:
+        raise damaged
     raise MissingModelError(
         f"model {digest.hex()} is needed",
         expected=f"it in {', '.join(dict.fromkeys(map(_name, looked)))}"
@@ -158,8 +164,8 @@ def find_model(digest: bytes, places: Iterable[Place], folder: Path | None = Non
     )
 
 
-def _in_folder(digest: bytes, folder: Path, others: list[str]) -> Path | None:
-    """Look through a folder's headers; what is there instead is added to ``others``."""
+def _in_folder(digest: bytes, folder: Path, others: list[str]) -> Iterator[Path]:
+    """Give the files whose headers name a model; what is there instead is added to ``others``."""
     for path in _model_files(folder):
         try:
             header = peek_model(_front(path, LONGEST_HEADER))
@@ -167,9 +173,9 @@ def _in_folder(digest: bytes, folder: Path, others: list[str]) -> Path | None:
             others.append(f"{path} ({error})")
             continue
         if header.digest == digest:
-            return path
-        others.append(str(path))
-    return None
+            yield path
+        else:
+            others.append(str(path))
 
 
 def _model_files(folder: Path) -> Iterator[Path]:

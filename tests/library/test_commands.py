@@ -194,6 +194,40 @@ def test_progress_needs_no_terminal(filled: Path, samples: Path, tmp_path: Path)
     assert done.stderr == b""
 
 
+def test_frames_are_those_of_the_first_stream(samples: Path, tmp_path: Path) -> None:
+    path = tmp_path / "lib.mocapdb"
+    for folder in ("a", "b"):  # points, and analog channels at another rate
+        done = mocapress("library", "add", path, samples / "markers.c3d", "--into", folder)
+    assert "300 of 300 frames were there" in done.output
+    for words in ([], ["b/markers.c3d"]):
+        (told,) = json.loads(mocapress("library", "info", path, *words, "--json").output)
+        assert told["frames_shared"] == 300
+
+
+def test_what_a_clip_is_warned_of_is_one_line(samples: Path, tmp_path: Path) -> None:
+    lines = (samples / BVH).read_text().splitlines()
+    lines[-1] = "nan " + lines[-1].split(maxsplit=1)[1]
+    (tmp_path / "odd.bvh").write_text("\n".join(lines))
+    path = tmp_path / "lib.mocapdb"
+    mocapress("library", "add", path, tmp_path / "odd.bvh", samples / BVH)
+    done = process("search", path, tmp_path / "odd.bvh", "--frames", "0:40")
+    assert done.returncode == 0
+    told = done.stderr.decode().splitlines()
+    assert len(told) == 1
+    assert told[0].startswith("mocapress: warning: ")
+
+
+def test_a_reader_that_has_seen_enough_is_no_fault(filled: Path) -> None:
+    for words in (["library", "list", filled], ["search", filled, "cmu/01.amc"]):
+        running = started(*words, env={**os.environ, "PYTHONUNBUFFERED": "1"})
+        assert running.stdout is not None
+        assert running.stderr is not None
+        running.stdout.close()
+        assert running.stderr.read() == b""
+        running.stderr.close()
+        running.wait()
+
+
 def test_a_library_may_go_without_an_index(tmp_path: Path, samples: Path) -> None:
     path = tmp_path / "lib.mocapdb"
     assert mocapress("library", "create", path, "--no-index").exit_code == 0

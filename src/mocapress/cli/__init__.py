@@ -4,15 +4,18 @@ import errno
 import io
 import os
 import sys
+import warnings
 
 
 def main() -> None:
     """Run the command line; no traceback reaches a user who has not asked for one."""
     from mocapress.cli.app import app
+    from mocapress.cli.warned import say_at_once
 
     if isinstance(sys.stdout, io.TextIOWrapper):
         # Names of files need not be UTF-8: they go out as they came in.
         sys.stdout.reconfigure(errors="surrogateescape")
+    warnings.showwarning = say_at_once
     debug = "--debug" in sys.argv[1:]
     try:
         try:

@@ -28,6 +28,16 @@ def kept() -> list[MotionWarning]:
     return found
 
 
+def say_at_once(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+    """Print a ``MotionWarning`` as commands print what they warn of."""
+    if isinstance(message, MotionWarning):
+        from mocapress.cli.report import say
+
+        say(f"warning: {message}")
+    else:
+        _show(message, category, *place, **more)
+
+
 def _keep(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
     if isinstance(message, MotionWarning):
         _of_thread.warnings = [*getattr(_of_thread, "warnings", []), message]

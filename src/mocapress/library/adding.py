@@ -65,7 +65,7 @@ class Added(NamedTuple):
     """Bytes of its own chunks, and of its head."""
     frames: int = 0
     shared: int = 0
-    """Frames that are those of other clips."""
+    """Frames that are those of other clips; as ``frames``, of the first stream."""
     warning: str | None = None
 
 
@@ -201,7 +201,7 @@ class Adder:
             original.size if original else 0,
             sum(entry.end - entry.begin for entry in made.mcz.entries),
             made.shape[0],
-            sum(run.frames for run in made.runs),
+            sum(run.frames for run in made.runs if run.stream == 0),
             made.warning,
         )
 

@@ -11,7 +11,8 @@ SELECT (SELECT count(*) FROM clips), (SELECT coalesce(sum(frames), 0) FROM clips
     (SELECT sum(frames * frame_time) FROM clips),
     (SELECT sum(frames) FROM clips WHERE frame_time IS NULL),
     (SELECT coalesce(sum(size), 0) FROM clips),
-    (SELECT coalesce(sum(frames), 0) FROM runs), (SELECT count(*) FROM skeletons),
+    (SELECT coalesce(sum(frames), 0) FROM runs WHERE stream = 0),
+    (SELECT count(*) FROM skeletons),
     (SELECT count(*) FROM texts), (SELECT count(*) FROM companions), (SELECT count(*) FROM models)
 """
 
@@ -68,7 +69,7 @@ def describe_clip(library: Library, name: str) -> dict[str, Any]:
             "codec": codecs.spec(opened.codec()) if opened.streams else "general-purpose",
             "raw_bytes": clip.size,
             "chunk_bytes": sum(entry.end - entry.begin for entry in opened.mcz.entries),
-            "frames_shared": sum(run.frames for run in opened.runs) or None,
+            "frames_shared": sum(run.frames for run in opened.runs_of(0)) or None,
             "companions": ", ".join(name for (name,) in names) or None,
             "labels": ", ".join(clip.labels) or None,
             "sha256": clip.sha256,

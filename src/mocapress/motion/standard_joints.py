@@ -65,8 +65,13 @@ _MOST_PARTS, _MOST_LIKELY = 10, 5
 
 def by_names(skeleton: Skeleton) -> dict[str, int]:
     """Give the joints that are known by their names, as indices into the skeleton."""
+    return dict(_by_names(skeleton.names, skeleton.parents))
+
+
+@lru_cache(maxsize=64)
+def _by_names(names: tuple[str, ...], parents: tuple[int, ...]) -> dict[str, int]:
     readings: dict[tuple[str, str], list[tuple[int, int]]] = {}
-    for index, name in enumerate(skeleton.names):
+    for index, name in enumerate(names):
         for side, base, left_out in _readings(name):
             readings.setdefault((side, base), []).append((left_out, index))
 
@@ -87,9 +92,9 @@ def by_names(skeleton: Skeleton) -> dict[str, int]:
             known = {joint: of for joint in limb if (of := likely(side, _SIDED[joint]))}
             ways = product(*(enumerate(of) for of in known.values()))
             for way in sorted(ways, key=lambda way: sum(place for place, _ in way)):
-                if _downwards([index for _, index in way], skeleton.parents):
-                    names = [f"{side}_{joint}" for joint in known]
-                    found |= zip(names, (index for _, index in way), strict=True)
+                if _downwards([index for _, index in way], parents):
+                    joints = [f"{side}_{joint}" for joint in known]
+                    found |= zip(joints, (index for _, index in way), strict=True)
                     break
     return found
 

@@ -55,7 +55,8 @@ def telling(path: str, *, debug: bool) -> Iterator[None]:
     try:
         yield
     except (MocapressError, OSError, MemoryError) as error:
-        if debug:
+        # Whoever read stdout has seen enough: no fault of the library.
+        if debug or isinstance(error, BrokenPipeError):
             raise
         say(message(error, path))
         raise typer.Exit(1) from error
