@@ -176,6 +176,7 @@ def waves_of(
         header,
         scale,
         0.12,
+        False,
         np.ones(window.measure.points),
         np.full(window.measure.points, inf),
         np.full(window.values.shape[1], inf),

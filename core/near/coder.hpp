@@ -105,14 +105,14 @@ class Coder : public Models {
     block.numbers = numbers;
     std::fill(numbers, numbers + n, 0);
     const Model::Place of_knot = knots.at(knot_context(around, n));
-    number<Vector>(side, of_knot, Quantiser::kOnly, around, block, 0, told(0));
+    number<Vector>(side, of_knot, Quantiser::only, around, block, 0, told(0));
     const Model::Place of_class = classes.at(class_context(around, n, numbers[0]));
     block.of_class = code_class<Vector>(side, of_class, n, wanted.of_class);
     const int end = end_of(block.of_class, n);
     std::size_t state = 0;
     for (int k = 1; k <= end; ++k) {
       const Model::Place place = sines.at(number_context(around, block, k));
-      const Quantiser quantiser = is_odd(state) ? Quantiser::kOdd : Quantiser::kEven;
+      const Quantiser quantiser = is_odd(state) ? Quantiser::odd : Quantiser::even;
       number<Vector>(side, place, quantiser, around, block, k, told(k));
       state = next_state(state, numbers[k]);
     }

@@ -267,12 +267,12 @@ inline constexpr int kMostLength = 29;
 inline constexpr std::size_t kMagnitudeDecisions = kUnary + 18;
 
 // How a number was rounded: by the only quantiser that there is, or by one of two.
-enum class Quantiser : std::uint8_t { kOnly, kEven, kOdd };
+enum class Quantiser : std::uint8_t { only, even, odd };
 
 // Where the u-th question of a magnitude stands. The first is another one for each of two
 // quantisers.
 inline std::size_t decision_of(int u, Quantiser quantiser) {
-  const bool later = quantiser == Quantiser::kOdd || (quantiser == Quantiser::kEven && u > 0);
+  const bool later = quantiser == Quantiser::odd || (quantiser == Quantiser::even && u > 0);
   return static_cast<std::size_t>(u) + (later ? 1 : 0);
 }
 

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kMostNumber = 1 << 29;
+// By how much a knot that is off costs more for each frame, in the block behind it.
+constexpr double kNextBlock = 0.1;
 
 // Bits that a decision costs of this chance, in 1/65536.
 double bits_of(int chance) {
@@ -129,7 +131,7 @@ class Trellis {
           static_cast<std::int32_t>(std::min(kMostNumber, (steps / kHalfStep + (odd ? 1 : 0)) / 2));
       for (const std::int32_t size : {0, low, low + 1}) {
         const double off = (steps - height_of(size, odd)) * target_.step;
-        const double bits = known[own].second.of(size, odd ? Quantiser::kOdd : Quantiser::kEven);
+        const double bits = known[own].second.of(size, odd ? Quantiser::odd : Quantiser::even);
         const double cost = way.cost + cost_ * off * off + target_.bit_cost * bits;
         const std::size_t to = next_state(state, size);
         if (cost >= next[to].cost) continue;
@@ -179,36 +181,32 @@ class Trellis {
   std::vector<std::array<Link, kStates>> links_;
 };
 
-// One block, its numbers and its curve.
+// What the square of an error costs in a block, on average, and at its end.
+struct Costs {
+  double middle = 0, end = 0;
+
+  Costs(const double* costs, int n) {
+    for (int t = 0; t < n; ++t) middle += costs[t] / n;
+    const int tail = std::min(n, 4);
+    for (int t = n - tail; t < n; ++t) end += costs[t] / tail;
+  }
+};
+
+// One block with this knot, its numbers and its curve.
 template <class Vector>
-MOCAPRESS_IN_PLACE Cut block_with(Coder& coder, const Plan& plan, const Target& target,
-                                  const Around& around, int start, int length, double last) {
+MOCAPRESS_IN_PLACE Cut block_of(Coder& coder, const Plan& plan, const Target& target,
+                                const Around& around, const Costs& costs, int start, int length,
+                                double last, std::int32_t knot) {
   const int n = length;
   const double* const wanted = target.values + start;
-  const double* const costs = target.costs + start;
+  const double cost = costs.middle;
   Cut cut;
   Piece& piece = cut.pieces.emplace_back();
   piece.numbers.assign(static_cast<std::size_t>(n), 0);
   piece.block = {start, n, 0, piece.numbers.data()};
   Block& block = piece.block;
-  double cost = 0, end_cost = 0;
-  for (int t = 0; t < n; ++t) cost += costs[t] / n;
-  const int tail = std::min(n, 4);
-  for (int t = n - tail; t < n; ++t) end_cost += costs[t] / tail;
-
-  const double knot_step = target.step * plan.knot;
-  const Model::Place knot_place = coder.knots.at(knot_context(around, n));
-  MagnitudeCosts<Vector> knot_costs(knot_place);
-  double found = 0;
-  const auto knot = cheapest(rounded((wanted[n - 1] - last) / knot_step), found, [&](auto q) {
-    const double off = last + q * knot_step - wanted[n - 1];
-    return target.bit_cost * knot_costs.of(std::abs(q), Quantiser::kOnly) +
-           end_cost * off * off * (1 + 0.15 * n);
-  });
   block.numbers[0] = knot;
-  const double end = last + knot * knot_step, off = end - wanted[n - 1];
-  cut.cost =
-      end_cost * off * off + target.bit_cost * knot_costs.of(std::abs(knot), Quantiser::kOnly);
+  const double end = last + knot * (target.step * plan.knot);
 
   // The sines of what the line leaves.
   std::vector<double> heights(static_cast<std::size_t>(n), 0.0);
@@ -261,10 +259,43 @@ MOCAPRESS_IN_PLACE Cut block_with(Coder& coder, const Plan& plan, const Target& 
   std::copy(numbers.begin(), numbers.end(), piece.numbers.begin() + 1);
   block.of_class = best_class;
   std::fill(piece.numbers.begin() + end_of(best_class, n) + 1, piece.numbers.end(), 0);
-  cut.cost += best;
+  cut.cost = best;
   cut.curve.resize(static_cast<std::size_t>(n));
   draw(block, last, target.step, plan, cut.curve.data());
   return cut;
+}
+
+// One block, with the best of the knots that are tried.
+template <class Vector>
+MOCAPRESS_IN_PLACE Cut block_with(Coder& coder, const Plan& plan, const Target& target,
+                                  const Around& around, int start, int length, double last) {
+  const Costs costs(target.costs + start, length);
+  const double knot_step = target.step * plan.knot;
+  const double wanted = target.values[start + length - 1];
+  const Model::Place place = coder.knots.at(knot_context(around, length));
+  MagnitudeCosts<Vector> bits(place);
+  // Of a knot: what its error costs, `times` as much where others must make it good, and its bits.
+  const auto cost_of = [&](std::int32_t knot, double times) {
+    const double off = last + knot * knot_step - wanted;
+    return target.bit_cost * bits.of(std::abs(knot), Quantiser::only) +
+           costs.end * off * off * times;
+  };
+  double found = 0;
+  const std::int32_t near = cheapest(rounded((wanted - last) / knot_step), found,
+                                     [&](auto knot) { return cost_of(knot, 1 + 0.15 * length); });
+  Cut best;
+  double least = kInfinite;
+  for (int i = 0; i < (target.tries_knots ? 4 : 1); ++i) {
+    const std::int32_t knot = std::array{near, near - 1, near + 1, 0}[static_cast<std::size_t>(i)];
+    if (i == 3 && std::abs(near) < 2) break;
+    Cut cut = block_of<Vector>(coder, plan, target, around, costs, start, length, last, knot);
+    const double cost = cut.cost + cost_of(knot, 1 + kNextBlock * length);
+    if (cost >= least) continue;
+    least = cost;
+    cut.cost += cost_of(knot, 1);
+    best = std::move(cut);
+  }
+  return best;
 }
 
 MOCAPRESS_WIDE [[gnu::flatten]] Cut wide_block(Coder& coder, const Plan& plan, const Target& target,

@@ -15,6 +15,7 @@ struct Target {
   const double* costs;
   double step;
   double bit_cost;
+  bool tries_knots;  // and not only the nearest
 };
 
 struct Piece {

@@ -234,9 +234,8 @@ class Encoder:
             return 0
         return 1 + sum(scale / self.goal.size >= each for each in _STARTS)
 
-    def _rate(self, scale: float) -> float:
-        coarse = self.starts and scale / self.goal.size >= _STARTS[1]
-        return _COARSE_RATE if coarse else _RATE
+    def _is_coarse(self, scale: float) -> bool:
+        return self.starts and scale / self.goal.size >= _STARTS[1]
 
     def _header(self, scale: float, errors: tuple[float, float]) -> bytes:
         steps = self._steps(scale)
@@ -263,7 +262,8 @@ class Encoder:
             self.values[first : first + self.chunk],
             self._header(scale, (0.0, 0.0)),
             scale,
-            self._rate(scale) if self.rate is None else self.rate,
+            self.rate or (_COARSE_RATE if self._is_coarse(scale) else _RATE),
+            self._is_coarse(scale),
             self.weights,
             most,
             self.value_most,
