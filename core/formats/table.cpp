@@ -20,8 +20,8 @@ bool is_missing(std::string_view text) {
   std::string word = lower(text);
   if (word.ends_with("(ind)")) word.resize(word.size() - 5);
   if (word.size() > 1 && (word[0] == '-' || word[0] == '+')) word.erase(0, 1);
-  return word == "nan" || word == "na" || word == "n/a" || word == "null" || word == "none" ||
-         word == "-";
+  return word == "nan" || word == "na" || word == "n/a" || word == "#n/a" || word == "null" ||
+         word == "none" || word == "-";
 }
 
 // The bytes of a number in its column.
@@ -81,13 +81,23 @@ std::vector<std::string_view> lines_of(std::string_view text, std::string_view l
 
 bool cells_of(std::string_view line, const TableCut& cut, std::vector<std::string_view>& cells) {
   cells.clear();
-  for (std::size_t at = 0; cells.size() < cut.width;) {
-    const std::size_t end = line.find(cut.delimiter, at);
+  for (std::size_t at = 0;;) {
+    const bool last = cells.size() + 1 == cut.width;
+    // Where one delimiter stands between all, none may follow the last cell.
+    const std::string& next = cut.before(last && cut.width > 1 ? cells.size() : cells.size() + 1);
+    std::size_t end = 0;
+    if (next.empty()) {
+      const std::size_t begin = line.find_first_not_of(' ', at);
+      if (begin == std::string_view::npos) return false;
+      end = line.find(' ', begin);
+    } else {
+      end = line.find(next, at);
+    }
+    if (last != (end == std::string_view::npos)) return false;
     cells.push_back(line.substr(at, end - at));
-    if (end == std::string_view::npos) return cells.size() == cut.width;
-    at = end + 1;
+    if (last) return true;
+    at = end + next.size();
   }
-  return false;
 }
 
 void TableSurvey::take(ColumnSurvey& column, std::string_view text) {
@@ -286,7 +296,7 @@ bool TablePrinter::print(std::string& out, const double* values, std::uint64_t c
       if (!unlike()) return false;
     line(out);
     for (std::size_t c = 0; c < columns_.size(); ++c) {
-      if (c > 0) out += cut_.delimiter;
+      if (c > 0) out += cut_.before(c);
       if (!cell(out, c, values) || out.size() > most) return false;
     }
   }

@@ -16,9 +16,16 @@ namespace mocapress {
 
 // How lines are cut into cells. A line of another width is no row.
 struct TableCut {
-  char delimiter = '\t';
+  // Between all cells, or of each two; an empty one stands before the blanks that a cell begins
+  // with.
+  std::vector<std::string> delimiters;
   std::string line_break;
   std::size_t width = 1;
+
+  // Before a cell that is not the first.
+  const std::string& before(std::size_t cell) const {
+    return delimiters.size() == 1 ? delimiters[0] : delimiters[cell - 1];
+  }
 };
 
 enum class CellKind : std::uint8_t { number, missing, text };

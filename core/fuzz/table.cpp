@@ -83,7 +83,12 @@ void check_layout(const TableCut& cut, std::string_view text, unsigned choice) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 4) return 0;
-  const TableCut cut{"\t,; "[data[0] % 4], data[1] % 2 == 0 ? "\n" : "\r\n", 1U + data[1] / 2 % 6};
+  const std::vector<std::string> delimiters{"\t", ",", "; ", " ", ""};
+  TableCut cut{{delimiters[data[0] % 5]}, data[1] % 2 == 0 ? "\n" : "\r\n", 1U + data[1] / 2 % 6};
+  if (data[0] >= 128 && cut.width > 1) {
+    cut.delimiters.assign(cut.width - 1, cut.delimiters[0]);
+    cut.delimiters[data[0] / 5 % (cut.width - 1)] = ",";
+  }
   const std::string_view text(reinterpret_cast<const char*>(data) + 3, size - 3);
   check_table(cut, text, data[2]);
   check_layout(cut, text, data[2]);

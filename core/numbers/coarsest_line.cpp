@@ -6,8 +6,9 @@
 namespace mocapress {
 namespace {
 
-constexpr std::size_t kStrays = 64;
-constexpr std::size_t kSample = 256;  // rows
+constexpr std::size_t kStrays = 64;     // one number of so many may be off the line
+constexpr std::size_t kNotNumbers = 8;  // and one of so many no number, as it is off all lines
+constexpr std::size_t kSample = 256;    // rows
 constexpr double kTie = 1e-3;
 constexpr double kTelling = 30;  // chance would need e^30 tries to look like this
 constexpr int kMostDecimals = 15;
@@ -23,10 +24,16 @@ struct ColumnView {
 
 bool holds(const NumberLine& line, const ColumnView& column) {
   const std::size_t most = column.rows / kStrays;
+  const std::size_t most_not_numbers = column.rows / kNotNumbers;
   std::size_t strays = 0;
+  std::size_t not_numbers = 0;
   for (std::size_t row = 0; row < column.rows; ++row) {
     const double value = column[row];
-    if (!line.holds(value, line.place(value)) && ++strays > most) return false;
+    if (std::isnan(value)) {
+      if (++not_numbers > most_not_numbers) return false;
+    } else if (!line.holds(value, line.place(value)) && ++strays > most) {
+      return false;
+    }
   }
   return true;
 }

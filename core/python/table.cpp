@@ -18,10 +18,15 @@ namespace {
 
 nb::bytes bytes_of(std::string_view text) { return nb::bytes(text.data(), text.size()); }
 
-TableCut cut_of(const nb::bytes& delimiter, const nb::bytes& line_break, std::size_t width) {
-  if (delimiter.size() != 1 || line_break.size() == 0 || width == 0)
+using Delimiters = std::vector<nb::bytes>;
+
+TableCut cut_of(const Delimiters& delimiters, const nb::bytes& line_break, std::size_t width) {
+  const bool fit = delimiters.size() == 1 || delimiters.size() + 1 == width;
+  if (!fit || delimiters.empty() || line_break.size() == 0 || width == 0)
     throw nb::value_error("no way to cut a table");
-  return {delimiter.c_str()[0], std::string(text_of(line_break)), width};
+  TableCut cut{{}, std::string(text_of(line_break)), width};
+  for (const auto& one : delimiters) cut.delimiters.emplace_back(text_of(one));
+  return cut;
 }
 
 // Kind, format, width, missing, text; first, step, divisor.
@@ -84,9 +89,10 @@ Surveyed surveyed(const ColumnSurvey& column) {
 // Keeps the bytes alive that its columns look at.
 class Matcher {
  public:
-  Matcher(const nb::bytes& delimiter, const nb::bytes& line_break, std::vector<ColumnTuple> columns)
+  Matcher(const Delimiters& delimiters, const nb::bytes& line_break,
+          std::vector<ColumnTuple> columns)
       : told_(std::move(columns)),
-        matcher_(cut_of(delimiter, line_break, told_.size()), columns_of(told_)) {
+        matcher_(cut_of(delimiters, line_break, told_.size()), columns_of(told_)) {
     for (const auto& one : told_) numbers_ += std::get<0>(one) == 0;
   }
 
@@ -128,12 +134,13 @@ class Matcher {
 
 class Printer {
  public:
-  Printer(const nb::bytes& delimiter, const nb::bytes& line_break, std::vector<ColumnTuple> columns,
-          std::vector<Texts> others, Texts verbatim, std::uint64_t rows)
+  Printer(const Delimiters& delimiters, const nb::bytes& line_break,
+          std::vector<ColumnTuple> columns, std::vector<Texts> others, Texts verbatim,
+          std::uint64_t rows)
       : told_(std::move(columns)),
         others_(std::move(others)),
         verbatim_(std::move(verbatim)),
-        printer_(cut_of(delimiter, line_break, told_.size()), columns_of(told_), viewed(),
+        printer_(cut_of(delimiters, line_break, told_.size()), columns_of(told_), viewed(),
                  {verbatim_.first, text_of(verbatim_.second)}, rows) {
     if (others_.size() != told_.size()) throw nb::value_error("lists of mismatched lengths");
     for (const auto& one : told_) numbers_ += std::get<0>(one) == 0;
@@ -175,7 +182,7 @@ std::size_t bound_pass_texts(const nb::bytes& record, std::size_t begin, std::ui
 }  // namespace
 
 void bind_table(nb::module_& module) {
-  const auto delimiter = nb::arg("delimiter");
+  const auto delimiters = nb::arg("delimiters");
   const auto line_break = nb::arg("line_break");
   const auto text = nb::arg("text");
   const auto column = nb::arg("column");
@@ -183,9 +190,11 @@ void bind_table(nb::module_& module) {
                           "What columns of a table hold, looked at in parts.")
       .def(
           "__init__",
-          [](TableSurvey* self, const nb::bytes& delimiter_, const nb::bytes& line_break_,
-             std::size_t width) { new (self) TableSurvey(cut_of(delimiter_, line_break_, width)); },
-          delimiter, line_break, nb::arg("width"))
+          [](TableSurvey* self, const Delimiters& delimiters_, const nb::bytes& line_break_,
+             std::size_t width) {
+            new (self) TableSurvey(cut_of(delimiters_, line_break_, width));
+          },
+          delimiters, line_break, nb::arg("width"))
       .def("add", &survey, text, nb::arg("sampled"),
            "Take whole lines; of so many rows, spread evenly, the cells are kept.")
       .def_ro("rows", &TableSurvey::rows)
@@ -214,7 +223,7 @@ void bind_table(nb::module_& module) {
   nb::class_<Matcher>(module, "TableMatcher",
                       "Compares a table with what its columns print, and takes its numbers out.\n\n"
                       "A column is kind, format, width, missing, text; first, step and divisor.")
-      .def(nb::init<const nb::bytes&, const nb::bytes&, std::vector<ColumnTuple>>(), delimiter,
+      .def(nb::init<const Delimiters&, const nb::bytes&, std::vector<ColumnTuple>>(), delimiters,
            line_break, nb::arg("columns"))
       .def("match", &Matcher::match, text, "Take whole lines; give the numbers of their rows.")
       .def_prop_ro("rows", &Matcher::rows)
@@ -224,9 +233,9 @@ void bind_table(nb::module_& module) {
       .def("texts", &Matcher::texts, column)
       .def("verbatim", &Matcher::verbatim);
   nb::class_<Printer>(module, "TablePrinter", "Prints a table, a run of rows after the other.")
-      .def(nb::init<const nb::bytes&, const nb::bytes&, std::vector<ColumnTuple>,
+      .def(nb::init<const Delimiters&, const nb::bytes&, std::vector<ColumnTuple>,
                     std::vector<Texts>, Texts, std::uint64_t>(),
-           delimiter, line_break, nb::arg("columns"), nb::arg("others"), nb::arg("verbatim"),
+           delimiters, line_break, nb::arg("columns"), nb::arg("others"), nb::arg("verbatim"),
            nb::arg("rows"))
       .def("print", &Printer::print, nb::arg("values"), nb::arg("most"),
            "Print the next rows; ValueError where they have more bytes.");

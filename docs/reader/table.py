@@ -1,11 +1,14 @@
 """From a stream to a table of numbers (docs/format/table.md)."""
 
+import codecs
 import math
 
 from printing import printed
 from records import CorruptError, Record
 
 NUMBERS, SAME, TEXTS, SERIES = range(4)
+COMMAS, SEVERAL = 1, 8
+ENCODINGS = ((2, codecs.BOM_UTF16_LE, "utf-16-le"), (4, codecs.BOM_UTF16_BE, "utf-16-be"))
 
 
 class Column:
@@ -55,6 +58,12 @@ class Layout:
         self.verbatim = [(record.integer(), record.bytes()) for _ in range(record.integer())]
         kinds = [record.integer() for _ in range(record.integer())]
         self.columns = [Column(record, kind) for kind in kinds]
+        self.options = record.integer() if record.at < len(record.data) else 0
+        self.delimiters = [self.delimiter] * (len(kinds) - 1)
+        if self.options & SEVERAL:
+            self.delimiters = [bytes([sign]) for sign in record.bytes()]
+            if len(self.delimiters) + 1 != len(kinds):
+                raise CorruptError("another number of delimiters")
         record.end()
 
     def printed(self, rows: list[list[float]]) -> bytes:
@@ -66,7 +75,18 @@ class Layout:
             column.cells(next(numbers) if column.kind == NUMBERS else [], self.rows)
             for column in self.columns
         ]
-        lines = [self.delimiter.join(row) for row in zip(*cells, strict=True)]
+        before = [b"", *self.delimiters]
+        lines = [
+            b"".join(sign + cell for sign, cell in zip(before, row, strict=True))
+            for row in zip(*cells, strict=True)
+        ]
         for place, line in self.verbatim:
             lines.insert(place, line)
-        return self.header + self.line_break.join(lines) + self.tail
+        body = self.line_break.join(lines)
+        if self.options & COMMAS:
+            body = body.translate(bytes.maketrans(b",.", b".,"))
+        made = self.header + body + self.tail
+        for option, mark, encoding in ENCODINGS:
+            if self.options & option:
+                made = mark + made.decode().encode(encoding)
+        return made

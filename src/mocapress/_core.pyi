@@ -196,7 +196,7 @@ def print_rows(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None)
 class TableSurvey:
     """What columns of a table hold, looked at in parts."""
 
-    def __init__(self, delimiter: bytes, line_break: bytes, width: int) -> None: ...
+    def __init__(self, delimiters: Sequence[bytes], line_break: bytes, width: int) -> None: ...
 
     def add(self, text: bytes, sampled: int) -> None:
         """Take whole lines; of so many rows, spread evenly, the cells are kept."""
@@ -225,7 +225,7 @@ class TableMatcher:
     A column is kind, format, width, missing, text; first, step and divisor.
     """
 
-    def __init__(self, delimiter: bytes, line_break: bytes, columns: Sequence[tuple[int, bytes, int, bytes, bytes, float, float, float]]) -> None: ...
+    def __init__(self, delimiters: Sequence[bytes], line_break: bytes, columns: Sequence[tuple[int, bytes, int, bytes, bytes, float, float, float]]) -> None: ...
 
     def match(self, text: bytes) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
         """Take whole lines; give the numbers of their rows."""
@@ -250,7 +250,7 @@ class TableMatcher:
 class TablePrinter:
     """Prints a table, a run of rows after the other."""
 
-    def __init__(self, delimiter: bytes, line_break: bytes, columns: Sequence[tuple[int, bytes, int, bytes, bytes, float, float, float]], others: Sequence[tuple[int, bytes]], verbatim: tuple[int, bytes], rows: int) -> None: ...
+    def __init__(self, delimiters: Sequence[bytes], line_break: bytes, columns: Sequence[tuple[int, bytes, int, bytes, bytes, float, float, float]], others: Sequence[tuple[int, bytes]], verbatim: tuple[int, bytes], rows: int) -> None: ...
 
     def print(self, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], most: int) -> bytes:
         """Print the next rows; ValueError where they have more bytes."""

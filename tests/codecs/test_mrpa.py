@@ -1,5 +1,7 @@
 """MRPA without parents: it is never larger than APP, and refuses what it does not write."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -56,3 +58,13 @@ def test_parents_in_a_circle_are_refused() -> None:
     circle = made.header[:2] + bytes([1, 1, 2, JOINTS - 1])  # 0 by 1, 1 by 0
     with pytest.raises(mp.CorruptError, match="no tree"):
         codec("mrpa").decode(circle, made.chunks, stream.columns)
+
+
+def test_a_chunk_of_more_frames_than_there_can_be_is_refused() -> None:
+    stream, skeleton = chained(0)
+    codec_ = codec("mrpa")
+    made = codec_.encode(stream, skeleton=skeleton)
+    lie = replace(made.chunks[0], frames=2**30)
+    assert made.chunks[0].payload[0] == 0, "coded as APP does"
+    with pytest.raises(mp.CorruptError, match="impossible number of frames"):
+        codec_.decode(made.header, [lie], stream.columns)

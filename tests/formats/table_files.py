@@ -60,3 +60,19 @@ def odd_table() -> bytes:
             lines.append("broken,row")
     lines[0] += ",,,,"
     return "\n".join(lines).encode()
+
+
+def commas() -> bytes:
+    """Give a table in UTF-16 whose numbers have decimal commas."""
+    rows = ["\t".join(f"{x:.4f}" for x in row) for row in markers()]
+    text = "\r\n".join(["\t".join(f"Kanal {i}" for i in range(12)), *rows])
+    return b"\xff\xfe" + text.replace("nan", "n/a").replace(".", ",").encode("utf-16-le")
+
+
+def cells() -> bytes:
+    """Give a table of quaternions, each in one cell."""
+    rows = []
+    for frame, row in enumerate(markers()[:, :8]):
+        several = (",".join(f"{x:.5f}" for x in part) for part in (row[:4], row[4:]))
+        rows.append("\t".join([f"{frame / 60:.4f}", *several]))
+    return "\n".join(["DataType=Quaternion", "time\tpelvis\ttorso", *rows]).encode()

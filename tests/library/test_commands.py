@@ -80,6 +80,32 @@ def test_export_and_import_code_nothing_again(filled: Path, tmp_path: Path) -> N
     assert mocapress("library", "import", second, out).exit_code == 1
 
 
+def test_what_is_imported_is_stored_once(samples: Path, tmp_path: Path) -> None:
+    packed, path = tmp_path / "packed", tmp_path / "lib.mocapdb"
+    names = [BVH, AMC, "markers.c3d"]
+    for folder, level in (("a", 1), ("b", 6)):
+        for name in names:
+            (packed / folder).mkdir(parents=True, exist_ok=True)
+            blob = mp.compress(samples / name, codec=f"exact:level={level}", notes={"by": folder})
+            (packed / folder / f"{name}.mcz").write_bytes(blob)
+    done = mocapress("library", "import", path, packed, "--json")
+    rows = {row["file"]: row for row in json.loads(done.output)}
+    for file, row in rows.items():
+        assert row["frames_shared"] == ("/b/" in file) * row["frames"]
+        assert (row["stored_bytes"] == 0) == ("/b/" in file)
+    assert path.stat().st_size < 0.6 * sum(p.stat().st_size for p in packed.rglob("*.mcz")) + 60_000
+    with mp.open_library(path, "a") as library:
+        for name in names:
+            data = (samples / name).read_bytes()
+            assert library.read_bytes(f"b/{name}") == data
+            assert library[f"b/{name}"].notes["by"] == "b"
+            # What has lost its source is coded anew, and what is exported needs nobody.
+            library.remove(f"a/{name}")
+            assert library.read_bytes(f"b/{name}") == data
+            assert mp.decompress(library.read_mcz(f"b/{name}")) == data
+        assert not library.verify()
+
+
 def test_extracting_overwrites_nothing_unasked(filled: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     mocapress("library", "extract", filled, "-o", out)

@@ -92,6 +92,19 @@ def test_a_copy_costs_what_differs(library: Library, take: Take, change: object)
     library.close()
 
 
+def test_an_edited_take_costs_no_frames(library: Library, take: Take) -> None:
+    header, rows = take
+    edited = amc_of(header, [row for i, row in enumerate(rows) if i % 220 < 180])
+    looped = amc_of(header, 9 * rows[:300])
+    library.add(amc_of(header, rows), "take.amc")
+    once = stored(library)
+    library.add(edited, "edited.amc")
+    library.add(looped, "looped.amc")
+    assert stored(library) == once
+    sound(library, {"edited.amc": edited, "looped.amc": looped})
+    library.close()
+
+
 def test_what_differs_is_coded(library: Library, take: Take) -> None:
     header, rows = take
     changed = rows[:500] + [row.replace(b"1", b"2") for row in rows[500:600]] + rows[600:]

@@ -2,6 +2,7 @@
 
 from decimal import Decimal
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import mocapress as mp
+from mocapress.formats import bvh
 from mocapress.motion import Clip, Joint, Skeleton, convert
 from mocapress.motion.columns import skeleton_columns
 from mocapress.motion.convert import to_amc_clip, to_bvh_clip
@@ -92,6 +94,20 @@ def test_any_skeleton_goes_to_asf_and_back(clip: Clip) -> None:
         assert len(ends | set(joint.ends)) <= 1
         assert i or not (ends - {(0.0, 0.0, 0.0)})
     same_places(clip, to_bvh_clip(amc), 1e-8)
+
+
+@given(bvh_clips(), st.randoms())
+def test_a_bvh_can_be_written_whatever_the_order_of_joints_and_columns(
+    clip: Clip, random: Random
+) -> None:
+    # A file has joints depth first, a clip only parents first; columns of a joint keep their order.
+    rank = [random.random() for _ in clip.skeleton.joints] if clip.skeleton else []
+    order = sorted(range(clip.channels), key=lambda c: rank[clip.columns[c].joint])
+    columns = tuple(clip.columns[c] for c in order)
+    mixed = Clip.of(clip.values[:, order], columns, clip.frame_time, clip.skeleton)
+    for one in (clip, mixed):
+        (data,) = bvh.write(one).values()
+        same_places(clip, mp.read(data), 1e-6)
 
 
 def test_angles_go_on_where_they_can(samples: Path) -> None:

@@ -210,6 +210,31 @@ def test_few_frames_are_enough(frames: int) -> None:
     assert standard_motion(person(0, frames=frames)).frames == frames
 
 
+def test_gaps_are_bridged_where_a_joint_was_lost() -> None:
+    clip = person(4)
+    whole = standard_motion(clip)
+    values = clip.values.copy()
+    toe = next(i for i, c in enumerate(clip.columns) if c.name == "LeftToe.rx")
+    hip = next(i for i, c in enumerate(clip.columns) if c.name == "LeftUpLeg.rx")
+    values[:, toe] = np.nan  # is not among the sixteen
+    values[20:22, hip] = values[0, hip] = np.nan
+    values[40, 0] = 1e300  # all of the body
+    bridged = standard_motion(clip.with_frames(values, clip.frame_time))
+    kept = np.r_[1:20, 22:40, 41:60]
+    assert bridged.places[kept] == pytest.approx(whole.places[kept], abs=0.02)
+    assert bridged.places == pytest.approx(whole.places, abs=0.2)
+    values[:, hip] = np.nan
+    with pytest.raises(UnsupportedError, match="places that are numbers"):
+        standard_motion(clip.with_frames(values, clip.frame_time))
+
+
+@pytest.mark.parametrize("style", ["LaFAN", "no names"])
+def test_who_is_nowhere_is_not_found(style: str) -> None:
+    clip = person(4, style=style)
+    with pytest.raises(UnsupportedError, match=r"places.* numbers"):
+        standard_motion(clip.with_values(clip.values * np.nan))
+
+
 def test_missing_joints_are_named() -> None:
     lame = person(0, without=("left_wrist", "right_ankle", "right_toe"))
     with pytest.raises(UnsupportedError, match=r"correspond to left_wrist, right_ankle"):

@@ -47,6 +47,10 @@ def write(clip: Clip) -> dict[str, bytes]:
     if clip.frame_time is None:
         raise UnsupportedError("a BVH file needs a frame time")
     header = format_hierarchy(clip.skeleton, clip.frames, decimal_seconds(clip.frame_time))
+    place = {joint: n for n, joint in enumerate(_depth_first(clip.skeleton))}
+    order = sorted(range(clip.channels), key=lambda c: place.get(clip.columns[c].joint, 0))
+    columns = tuple(clip.columns[c] for c in order)
+    clip = Clip.of(clip.values[:, order], columns, clip.frame_time, clip.skeleton, clip.name)
     literals = [b"", *[b" "] * (clip.channels - 1), b"\n"]
     return {".bvh": print_clip(clip, header, literals, counter=False)}
 
@@ -54,9 +58,7 @@ def write(clip: Clip) -> dict[str, bytes]:
 def format_hierarchy(skeleton: Skeleton, frames: int, frame_time: Decimal) -> bytes:
     """Print the first part of a BVH file; joints parents first, depth first."""
     lines = ["HIERARCHY"]
-    children: dict[int, list[int]] = {}
-    for i, joint in enumerate(skeleton.joints):
-        children.setdefault(joint.parent, []).append(i)
+    children = _children(skeleton)
     pending: list[tuple[int, int]] = [(root, 0) for root in reversed(children.get(-1, []))]
     while pending:
         i, depth = pending.pop()
@@ -83,6 +85,23 @@ def format_hierarchy(skeleton: Skeleton, frames: int, frame_time: Decimal) -> by
         pending += [(child, depth + 1) for child in reversed(children.get(i, []))]
     lines += ["MOTION", f"Frames: {frames}", f"Frame Time: {to_state(frame_time)}", ""]
     return "\n".join(lines).encode()
+
+
+def _children(skeleton: Skeleton) -> dict[int, list[int]]:
+    children: dict[int, list[int]] = {}
+    for i, joint in enumerate(skeleton.joints):
+        children.setdefault(joint.parent, []).append(i)
+    return children
+
+
+def _depth_first(skeleton: Skeleton) -> list[int]:
+    """Give the joints in the order in which a file has them."""
+    children, order = _children(skeleton), []
+    pending = children.get(-1, [])[::-1]
+    while pending:
+        order.append(pending.pop())
+        pending += reversed(children.get(order[-1], []))
+    return order
 
 
 def _text(vector: Vec3) -> str:

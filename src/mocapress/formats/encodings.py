@@ -43,10 +43,22 @@ def encoded(data: bytes, encoding: str) -> bytes:
         When they are not UTF-8.
 
     """
+    return MARKS.get(encoding, b"") + recoded(data, encoding)
+
+
+def recoded(data: bytes, encoding: str) -> bytes:
+    """Give a part of a file, without the mark at its beginning, from what was read.
+
+    Raises
+    ------
+    CorruptError
+        When it is not UTF-8.
+
+    """
     if not encoding:
         return data
     try:
-        return MARKS[encoding] + data.decode("utf-8").encode(encoding)
+        return data.decode("utf-8").encode(encoding)
     except UnicodeDecodeError:
         raise CorruptError("the layout makes no text") from None
 

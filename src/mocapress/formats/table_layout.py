@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from mocapress import _core
 from mocapress.errors import CorruptError
 from mocapress.formats.contract import StoredLayout
+from mocapress.formats.encodings import MARKS, recoded
 from mocapress.formats.number_formats import SHORTEST, packed, read_format, write_format
 from mocapress.formats.rows import RowsOf
 from mocapress.motion.number_format import NumberFormat
@@ -28,6 +29,17 @@ MOST_COLUMNS = 2**16
 _MOST_ROWS = 2**40
 _PIECE = 2**16
 """Cells that are printed together."""
+_LONGEST_DELIMITER = 255
+_COMMAS, _MIXED = 1, 8
+_ENCODINGS = {"": 0, "utf-16-le": 2, "utf-16-be": 4}
+"""What the options of a layout say, as bits."""
+_ENCODED, _MOST_OPTIONS = 6, 15
+_EXCHANGED = bytes.maketrans(b",.", b".,")
+
+
+def exchanged(text: bytes) -> bytes:
+    """Give a text with points for commas, and commas for points."""
+    return text.translate(_EXCHANGED)
 
 
 class Texts(NamedTuple):
@@ -90,7 +102,8 @@ class TableLayout(StoredLayout):
 
     format: str
     header: bytes
-    delimiter: bytes
+    delimiters: tuple[bytes, ...]
+    """Between all cells, or of each two."""
     line_break: bytes
     tail: bytes
     """Behind the last row's cells: a line break, or nothing, or lines that are no rows."""
@@ -99,6 +112,10 @@ class TableLayout(StoredLayout):
     """Those of cells."""
     verbatim: Texts
     """Lines between the rows that are no such rows, by their line in the body."""
+    decimal_comma: bool = False
+    """Whether commas and points of the rows are exchanged in the file."""
+    encoding: str = ""
+    """Of the file, where it is not UTF-8: one of ``MARKS``."""
 
     @property
     def sizes(self) -> list[tuple[int, int]]:
@@ -107,10 +124,21 @@ class TableLayout(StoredLayout):
 
     def pieces(self, rows: RowsOf, most_bytes: int = 2**62) -> Iterator[bytes]:
         """Print the file; see ``StoredLayout``."""
+        mark = MARKS.get(self.encoding, b"")
+        # A text may be longer in UTF-8 than in UTF-16.
+        for piece in self._texts(rows, most_bytes * 2 if mark else most_bytes):
+            made = mark + recoded(piece, self.encoding)
+            mark, most_bytes = b"", most_bytes - len(made)
+            if most_bytes < 0:
+                raise CorruptError("the layout makes a longer file than announced")
+            yield made
+
+    def _texts(self, rows: RowsOf, most_bytes: int) -> Iterator[bytes]:
+        """Print the file in its parts, in UTF-8."""
         left = most_bytes - len(self.header) - len(self.tail)
         try:
             printer = _core.TablePrinter(
-                self.delimiter,
+                self.delimiters,
                 self.line_break,
                 [column.told() for column in self.columns],
                 [column.others for column in self.columns],
@@ -123,7 +151,7 @@ class TableLayout(StoredLayout):
                 values = rows(0, first, min(first + step, self.rows))
                 piece = printer.print(np.ascontiguousarray(values), max(left, 0))
                 left -= len(piece)
-                yield piece
+                yield exchanged(piece) if self.decimal_comma else piece
         except ValueError as error:
             raise CorruptError(f"the layout does not fit its file: {error}") from error
         if left < 0:
@@ -133,7 +161,7 @@ class TableLayout(StoredLayout):
     def record(self) -> bytes:
         """Give the layout as it is stored."""
         writer = Writer()
-        for part in (self.header, self.delimiter, self.line_break, self.tail):
+        for part in (self.header, self.delimiters[0], self.line_break, self.tail):
             writer.bytes(part)
         writer.integer(self.rows)
         _write_texts(writer, self.verbatim)
@@ -142,6 +170,12 @@ class TableLayout(StoredLayout):
             writer.integer(column.kind)
         for column in self.columns:
             _write_column(writer, column)
+        mixed = len(self.delimiters) > 1
+        options = _COMMAS * self.decimal_comma + _ENCODINGS[self.encoding] + _MIXED * mixed
+        if options:
+            writer.integer(options)
+        if mixed:
+            writer.bytes(b"".join(self.delimiters))
         return bytes(writer.data)
 
 
@@ -175,7 +209,7 @@ def read_layout(data: bytes, kind: str) -> TableLayout:
     """
     reader = Reader(data, "layout of a table")
     header, delimiter, line_break, tail = (reader.bytes() for _ in range(4))
-    if len(delimiter) != 1 or not line_break:
+    if len(delimiter) > _LONGEST_DELIMITER or not line_break:
         raise reader.fail("no way to cut rows")
     rows = reader.integer(_MOST_ROWS)
     verbatim = _read_texts(reader, data, _MOST_ROWS, steps=False)
@@ -183,8 +217,28 @@ def read_layout(data: bytes, kind: str) -> TableLayout:
     if not kinds:
         raise reader.fail("a table without columns")
     columns = tuple(_read_column(reader, data, kind, rows) for kind in kinds)
+    options = reader.integer(_MOST_OPTIONS) if reader.left else 0
+    delimiters: tuple[bytes, ...] = (delimiter,)
+    if options & _MIXED:
+        delimiters = tuple(bytes([sign]) for sign in reader.bytes())
+        if len(delimiters) + 1 != len(kinds):
+            raise reader.fail("another number of delimiters")
+    encoding = next((name for name, bit in _ENCODINGS.items() if bit == options & _ENCODED), None)
+    if encoding is None:
+        raise reader.fail("no such encoding")
     reader.end()
-    return TableLayout(kind, header, delimiter, line_break, tail, columns, rows, verbatim)
+    return TableLayout(
+        kind,
+        header,
+        delimiters,
+        line_break,
+        tail,
+        columns,
+        rows,
+        verbatim,
+        bool(options & _COMMAS),
+        encoding,
+    )
 
 
 def _read_texts(reader: Reader, data: bytes, most_place: int, *, steps: bool) -> Texts:

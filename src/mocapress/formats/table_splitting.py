@@ -4,12 +4,9 @@ A table may be larger than memory. It is gone through to see what its columns ho
 all that they do not print, and then for its numbers.
 """
 
-import re
-from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
-from typing import NamedTuple
 
 import numpy as np
 
@@ -17,8 +14,8 @@ from mocapress import _core
 from mocapress.errors import FormatError
 from mocapress.formats.number_formats import printed, unpacked
 from mocapress.formats.printed_floats import as_floats
+from mocapress.formats.table_cutting import Cut, find_cut
 from mocapress.formats.table_layout import (
-    MOST_COLUMNS,
     NUMBERS,
     SAME,
     SERIES,
@@ -31,45 +28,11 @@ from mocapress.formats.table_layout import (
 )
 from mocapress.records import Ranges
 
-_DELIMITERS = (b"\t", b",", b";", b" ")
-NUMBER = re.compile(rb"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\Z")
-MISSING = re.compile(rb"([-+]?(nan|na|n/a|null|none|-)(\(ind\))?)?\Z", re.IGNORECASE)
-_HEAD = 2**18
-"""Bytes from which delimiter, width and header are found."""
-_BLOCK = 2**20
-_LONGEST_LINE = 2**24
 _SAMPLE = 48
 """Rows of the first block of which all cells are looked at again; of others, few."""
 _SAMPLE_OF_OTHERS = 4
-_LONGEST_HEADER = 16
 _MOST_KEPT = 2**16
 """Bytes that any table may have beside its numbers; others half of their size."""
-
-
-class Cut(NamedTuple):
-    """Where the rows of a table are, and how they are cut into cells."""
-
-    delimiter: bytes
-    line_break: bytes
-    width: int
-    begin: int
-    end: int
-    """Behind the last row's cells."""
-
-    def blocks(self, file: Ranges) -> Iterator[bytes]:
-        """Give the lines, many at a time, without the line break behind the last."""
-        rest, at = b"", self.begin
-        while at < self.end:
-            stop = min(at + max(_BLOCK, len(rest)), self.end)
-            part, at = rest + file.read(at, stop), stop
-            end = part.rfind(self.line_break) if at < self.end else len(part)
-            if end < 0:
-                if len(part) > _LONGEST_LINE:
-                    raise FormatError("a line too long for a table", offset=at - len(part))
-                rest = part
-                continue
-            rest = part[end + len(self.line_break) :]
-            yield part[:end]
 
 
 def split_table(file: Ranges, kind: str, name: str | None) -> tuple[TableLayout, Values]:
@@ -97,7 +60,7 @@ def find_layout(
         When it is no table of numbers, or mostly something else.
 
     """
-    cut = _cut(file, name)
+    cut = find_cut(file, name)
     columns = _columns(file, cut)
     while True:
         if kept is not None:
@@ -129,19 +92,21 @@ def find_layout(
     return TableLayout(
         kind,
         file.read(0, cut.begin),
-        cut.delimiter,
+        cut.delimiters,
         cut.line_break,
         file.read(cut.end, file.size),
         found,
         matcher.rows,
         Texts(*matcher.verbatim()),
+        cut.decimal_comma,
     )
 
 
 def numbers_of(file: Ranges, layout: TableLayout) -> Iterator[Values]:
     """Give the numbers of a table whose layout is found, a run of rows after the other."""
     begin, end = len(layout.header), file.size - len(layout.tail)
-    cut = Cut(layout.delimiter, layout.line_break, len(layout.columns), begin, end)
+    width = len(layout.columns)
+    cut = Cut(layout.delimiters, layout.line_break, width, begin, end, layout.decimal_comma)
     columns = [column if column.kind == NUMBERS else TableColumn(SAME) for column in layout.columns]
     for block in cut.blocks(file):
         # A new one, so that it keeps nothing.
@@ -159,76 +124,12 @@ def _floats(layout: TableLayout, numbers: Values) -> Values:
 
 def _matcher(cut: Cut, columns: list[TableColumn]) -> _core.TableMatcher:
     told = [column.told() for column in columns]
-    return _core.TableMatcher(cut.delimiter, cut.line_break, told)
-
-
-def _cut(file: Ranges, name: str | None) -> Cut:
-    head = file.read(0, min(_HEAD, file.size))
-    line_break = b"\r\n" if head.count(b"\r\n") * 2 > head.count(b"\n") else b"\n"
-    if len(head) < file.size:
-        head = head[: head.rfind(line_break) + len(line_break)]
-    lines = head.split(line_break)
-    score, delimiter, begin, width = max(
-        (_rows(lines, delimiter) for delimiter in _DELIMITERS), key=lambda one: one[0]
-    )
-    if score < 1 or width > MOST_COLUMNS:
-        raise FormatError("no table of numbers", file=name, expected="rows of numbers")
-
-    def is_row(line: bytes) -> bool:
-        return line.count(delimiter) + 1 == width and _is_row(line, delimiter)
-
-    start = sum(len(line) + len(line_break) for line in lines[:begin])
-    return Cut(delimiter, line_break, width, start, _end(file, start, line_break, is_row))
-
-
-def _end(file: Ranges, begin: int, line_break: bytes, is_row: Callable[[bytes], bool]) -> int:
-    """Give where the last row of numbers ends, which is looked for near the end of the file."""
-    start = max(file.size - _BLOCK, begin)
-    lines = file.read(start, file.size).split(line_break)
-    end = file.size
-    for place in range(len(lines) - 1, 0 if start > begin else -1, -1):
-        if is_row(lines[place]):
-            return end
-        end -= len(lines[place]) + len(line_break)
-    return file.size
-
-
-def _rows(lines: list[bytes], delimiter: bytes) -> tuple[int, bytes, int, int]:
-    """Give how many numbers there are with a delimiter, which line is the first row, its cells."""
-    nothing = (0, delimiter, 0, 0)
-    end = len(lines)
-    while end and not lines[end - 1].strip():
-        end -= 1
-    if not end:
-        return nothing
-    widths = Counter(line.count(delimiter) + 1 for line in lines[end // 2 : end])
-    width = widths.most_common(1)[0][0]
-    if width < 2 and delimiter != b"\t":
-        return nothing
-    numeric = [
-        line.count(delimiter) + 1 == width and _is_row(line, delimiter) for line in lines[:end]
-    ]
-    if not any(numeric) or sum(numeric) * 2 < end - numeric.index(True):
-        return nothing
-    begin = numeric.index(True)
-    # Headers have rows of numbers, too; behind the last line that is none, all are.
-    for place in range(begin, min(end, _LONGEST_HEADER)):
-        if lines[place].strip() and not numeric[place]:
-            begin = place + 1
-    return sum(numeric[begin:]) * width, delimiter, begin, width
-
-
-def _is_row(line: bytes, delimiter: bytes) -> bool:
-    """Tell whether most cells of a line are numbers, or no cell at all is anything else."""
-    cells = [cell.strip() for cell in line.split(delimiter)]
-    numbers = sum(1 for cell in cells if NUMBER.match(cell))
-    others = sum(1 for cell in cells if cell and not NUMBER.match(cell) and not MISSING.match(cell))
-    return numbers > 0 and numbers >= others
+    return _core.TableMatcher(cut.delimiters, cut.line_break, told)
 
 
 def _columns(file: Ranges, cut: Cut) -> list[TableColumn]:
     """Find how the cells of columns come about."""
-    survey = _core.TableSurvey(cut.delimiter, cut.line_break, cut.width)
+    survey = _core.TableSurvey(cut.delimiters, cut.line_break, cut.width)
     sampled = _SAMPLE
     for block in cut.blocks(file):
         survey.add(block, sampled)

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from functools import partial
 from itertools import islice
 from pathlib import Path
@@ -15,29 +14,26 @@ from numpy.typing import NDArray
 from mocapress.errors import CorruptError, FormatError
 from mocapress.formats.bids import channels_beside
 from mocapress.formats.contract import Format, LongSplit, Near, Split
+from mocapress.formats.encodings import FileText
 from mocapress.formats.layout import NO_ROWS
 from mocapress.formats.printed_floats import as_printed
 from mocapress.formats.problems import BYTES_AFTER_END, UNREADABLE_ROWS, Problem
+from mocapress.formats.table_cutting import MISSING, NUMBER
 from mocapress.formats.table_layout import (
     NUMBERS,
     SAME,
     SERIES,
+    TEXTS,
     TableColumn,
     TableLayout,
     read_layout,
     series,
 )
-from mocapress.formats.table_splitting import (
-    MISSING,
-    NUMBER,
-    find_layout,
-    numbers_of,
-    split_table,
-)
+from mocapress.formats.table_names import header_of, text_of, time_of, unnamed
+from mocapress.formats.table_splitting import find_layout, numbers_of, split_table
 from mocapress.formats.table_writing import with_frames, write_csv
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.columns import distinct, numbered_columns
-from mocapress.motion.frame_time import FrameTime
 from mocapress.records import Held, Ranges
 
 CSV = "csv"
@@ -45,9 +41,12 @@ CSV = "csv"
 TABLE = "table"
 """Name of the stream that holds the columns of numbers."""
 _ROWS_AT_LEAST = 3
+_NUMBERS_AT_LEAST = 1000
+"""In fewer rows, where rows are long."""
+_LONGEST_LINE = 2**12
+"""Bytes of a line behind the rows that are looked at."""
 _MOST_NAMED = 2**12
 """Lines, and cells of a column, that are looked at to name those that are broken."""
-_TIME = re.compile(r"(time|timestamp|t|seconds|time *\(?s(econds)?\)?)\Z", re.IGNORECASE)
 
 Values = NDArray[np.float64]
 
@@ -61,7 +60,9 @@ def split(data: bytes, _skeleton: Skeleton | None, file: str | None, *, kind: st
         When it is no table of numbers.
 
     """
-    layout, values = split_table(Held(data), kind, file)
+    text = FileText.of(data)
+    layout, values = split_table(Held(text.data), kind, file)
+    layout = replace(layout, encoding=text.encoding)
     return Split(_clip(layout, values, file), NO_ROWS, tuple(problems_of(layout)), layout)
 
 
@@ -74,6 +75,8 @@ def split_long(file: Ranges, name: str | None, *, kind: str = CSV) -> LongSplit:
         When it is no table of numbers.
 
     """
+    if FileText.of(file.read(0, 4)).encoding:
+        raise FormatError("a large table in UTF-16", file=name, expected="UTF-8")
     layout = find_layout(file, kind, name)
     clip = _clip(layout, np.empty((0, layout.sizes[0][1])), name)
 
@@ -98,7 +101,7 @@ def problems_of(layout: TableLayout) -> list[Problem]:
     broken = [(place, line) for place, line in lines if line.strip()]
     if broken:
         place, line = min(broken)
-        cells = line.count(layout.delimiter) + 1
+        cells = _cells_of(line, layout.delimiters[0])
         what = "a row of another length, which is left out" + _and_more(len(broken))
         width = f"{len(layout.columns)} cells"
         found.append(Problem.of(UNREADABLE_ROWS, what, first + place, None, width, str(cells)))
@@ -114,49 +117,30 @@ def problems_of(layout: TableLayout) -> list[Problem]:
         at = first + row + sum(place <= row for place, _ in lines)
         what = "a cell that is no number" + _and_more(len(odd))
         found.append(Problem.of(UNREADABLE_ROWS, what, at, None, "a number", repr(text_of(cell))))
-    if layout.tail.strip():
-        found.append(Problem.of(BYTES_AFTER_END, "something behind the last row"))
+    if layout.tail.strip(b' \t\r\n"'):
+        rows = sum(map(_is_row, layout.tail.split(b"\n")[:_MOST_NAMED]))
+        if rows > 1:
+            at = first + layout.rows + len(lines)
+            what = "rows of another table behind the last row, which are left out"
+            found.append(Problem.of(UNREADABLE_ROWS, what, at))
+        else:
+            found.append(Problem.of(BYTES_AFTER_END, "something behind the last row"))
     return found
+
+
+def _is_row(line: bytes) -> bool:
+    """Tell whether a line has several numbers, however it is cut."""
+    cells = re.split(rb"[\t,;]", line[:_LONGEST_LINE])
+    return sum(1 for cell in cells if NUMBER.match(cell.strip())) > 1
+
+
+def _cells_of(line: bytes, delimiter: bytes) -> int:
+    return line.count(delimiter) + 1 if delimiter else len(line.split())
 
 
 def _and_more(count: int) -> str:
     least = "at least " if count >= _MOST_NAMED else ""
     return f" (and {least}{count - 1} more)" if count > 1 else ""
-
-
-def header_lines(layout: TableLayout) -> list[list[str]]:
-    """Give the cells of the header's lines, without quotes."""
-    lines = layout.header.split(layout.line_break)[:-1]
-    return [
-        [text_of(cell).strip().strip('"') for cell in line.split(layout.delimiter)]
-        for line in lines
-    ]
-
-
-def text_of(data: bytes) -> str:
-    """Give a text, which may be in UTF-8 or ISO 8859-1."""
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("latin-1")
-
-
-def names_of(layout: TableLayout) -> list[str]:
-    """Give the names of all columns: the last line of the header that has one for each."""
-    width = len(layout.columns)
-    for cells in reversed(header_lines(layout)):
-        named = cells[:width]
-        if len(named) == width and sum(map(bool, named)) * 2 > width:
-            return [name or _unnamed(i) for i, name in enumerate(named)]
-    return [_unnamed(i) for i in range(width)]
-
-
-def time_of(layout: TableLayout) -> FrameTime:
-    """Give the seconds per row, of a column of times."""
-    for name, column in zip(names_of(layout), layout.columns, strict=True):
-        if column.kind == SERIES and _TIME.match(name):
-            return Fraction(column.step)
-    return None
 
 
 def full_values(layout: TableLayout, values: Values) -> dict[int, Values]:
@@ -188,11 +172,8 @@ def _is_text(column: TableColumn, *, named: bool) -> bool:
     """Tell a column that is one text from a channel that has no number in any row."""
     if column.kind != SAME or not np.isnan(_number(column.text)):
         return False
-    return not (named and MISSING.match(column.text.strip()))
-
-
-def _unnamed(place: int) -> str:
-    return f"column {place + 1}"
+    text = column.text.strip()
+    return not (MISSING.match(text) and (named or text))
 
 
 def _number(cell: bytes) -> float:
@@ -205,8 +186,8 @@ def _number(cell: bytes) -> float:
 def described(layout: Any, clip: Clip, near: Near) -> Clip:
     """Give the columns of numbers, with their names; those of Motion-BIDS stand beside the file."""
     stream = stream_of(clip, TABLE)
-    values, names = full_values(layout, stream.values), names_of(layout)
-    units, time = [""] * len(names), stream.frame_time
+    values, (names, units) = full_values(layout, stream.values), header_of(layout)
+    time = stream.frame_time
     beside = channels_beside(near, len(names))
     if beside is not None:
         names, units = beside.names or names, beside.units or units
@@ -214,7 +195,7 @@ def described(layout: Any, clip: Clip, near: Near) -> Clip:
     kept = {
         place: column
         for place, column in values.items()
-        if not _is_text(layout.columns[place], named=names[place] != _unnamed(place))
+        if not _is_text(layout.columns[place], named=names[place] != unnamed(place))
     }
     named = named_columns([names[place] for place in kept])
     columns = tuple(
@@ -237,16 +218,23 @@ def named_columns(names: Sequence[str]) -> tuple[Column, ...]:
 
 
 def _recognised(head: bytes) -> bool:
-    """Tell a table by rows of equally many numbers, between tabs, commas or semicolons."""
+    """Tell a table by rows of equally many numbers, between tabs, commas, semicolons or blanks."""
     if b"\0" in head:
         return False
-    whole = head[: head.rfind(b"\n") + 1]
+    whole = head[: max(head.rfind(b"\n"), head.rfind(b"\r")) + 1]
     try:
         layout, values = split_table(Held(whole), CSV, None)
     except FormatError:
         return False
-    enough = layout.rows >= _ROWS_AT_LEAST and values.shape[1] > 1 and not layout.verbatim.number
-    return enough and layout.delimiter != b" "
+    columns = values.shape[1]
+    between = layout.verbatim.items(steps=False)
+    if columns < 2 or any(line.strip() for _, line in between):
+        return False
+    if all(not delimiter.strip(b" ") for delimiter in layout.delimiters):
+        # Between blanks stands any text, too.
+        others = any(column.kind == TEXTS or column.others.number for column in layout.columns)
+        return layout.rows >= _ROWS_AT_LEAST and not others
+    return layout.rows >= _ROWS_AT_LEAST or layout.rows * columns >= _NUMBERS_AT_LEAST
 
 
 FORMAT = Format(

@@ -15,8 +15,9 @@ from mocapress.formats.contract import Format, Near, Split
 from mocapress.formats.number_formats import SHORTEST, printed
 from mocapress.formats.problems import EXTRA_ROWS, MISSING_ROWS, Problem
 from mocapress.formats.table_layout import SERIES, TableLayout, read_layout
+from mocapress.formats.table_names import header_lines
 from mocapress.formats.table_writing import blank, counted, with_frames
-from mocapress.formats.tables import TABLE, full_values, header_lines, stream_of
+from mocapress.formats.tables import TABLE, full_values, stream_of
 from mocapress.formats.tables import split as split_table
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.columns import distinct
@@ -45,7 +46,7 @@ def split(data: bytes, skeleton: Skeleton | None, file: str | None) -> Split:
     facts = _facts(layout)
     clip = parts.clip
     try:
-        rate = Fraction(Decimal(facts.get("DataRate", "")))
+        rate = Fraction(Decimal(facts.get("DataRate", "").replace(",", ".")))
     except (InvalidOperation, ValueError):
         rate = Fraction(0)
     stream = clip.streams[TABLE]

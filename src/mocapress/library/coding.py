@@ -12,13 +12,13 @@ from mocapress.api.opening import Opened
 from mocapress.api.restoring import contents
 from mocapress.codecs import Codec, Model
 from mocapress.codecs.fallback import first_that_works
-from mocapress.container import Mcz, open_mcz
-from mocapress.errors import VerificationError
+from mocapress.container import Mcz, MczWriter, open_mcz
+from mocapress.errors import MocapressError, VerificationError
 from mocapress.formats import Split, recognise
 from mocapress.library.database import Database
 from mocapress.library.opened import OpenedClip
 from mocapress.library.rows import Run
-from mocapress.library.sharing import Hashes, Known, anchors, find_runs
+from mocapress.library.sharing import Hashes, Known, Values, anchors, find_runs
 from mocapress.models import Place
 from mocapress.motion import Clip
 from mocapress.source import Source
@@ -101,8 +101,11 @@ class Coder:
         hashes = self._anchors(clip, ())
         return Coded(mcz, None, clip.values.shape, (), hashes, None, self._models, clip=clip)
 
-    def mcz(self, source: Source) -> Coded:
-        """Take a ``.mcz`` as it is, once all of it is decoded and checked."""
+    def mcz(self, source: Source, without: int | None = None) -> Coded:
+        """Take a ``.mcz`` as it is, once all of it is decoded and checked.
+
+        Where another clip than ``without`` has all its frames, its chunks are left out.
+        """
         opened = Opened(source, self.models)
         mcz = opened.mcz
         data = contents(opened, mcz.original) if mcz.original else b""
@@ -110,19 +113,55 @@ class Coder:
             of = recognise(data, mcz.original.name if mcz.original else "")
             return Coded(mcz, of.id if of else "")
         values = [
-            opened.rows(index).values
+            opened.rows(index).values if stream.columns else np.empty((opened.frames(index), 0))
             for index, stream in enumerate(opened.streams)
-            if stream.columns
         ]
-        first = values[0] if opened.streams[0].columns else np.empty((opened.frames(), 0))
-        kept_exact = first.size and opened.codec().lossless
+        first = values[0]
+        lossless = all(opened.codec(index).lossless for index in range(len(opened.streams)))
         kind = mcz.original.format if mcz.original else None
-        hashes = anchors(first) if kept_exact else None
-        models = [opened.model(index) for index in range(len(opened.streams))]
-        kept = tuple(model for model in models if model is not None)
+        hashes = anchors(first) if first.size and lossless else None
         stream = opened.streams[0]
         clip = Clip.of(first, stream.columns, stream.frame_time, mcz.head.skeleton)
+        if mcz.original is not None and hashes is not None:
+            newest, runs = self._all_there(mcz.original.digest, hashes, values, without)
+            if runs:
+                rest = _without_chunks(mcz)
+                return Coded(rest, kind, first.shape, runs, None, None, (), newest, clip)
+        models = [opened.model(index) for index in range(len(opened.streams))]
+        kept = tuple(model for model in models if model is not None)
         return Coded(mcz, kind, first.shape, (), hashes, None, kept, clip=clip)
+
+    def _all_there(
+        self, digest: bytes, hashes: Hashes, values: Sequence[Values], without: int | None
+    ) -> tuple[int, tuple[Run, ...]]:
+        """Give the newest clip, and runs that are all of another clip with the same numbers."""
+        with self.db.reading() as connection:
+            newest = self.known.refresh(connection)
+            candidates = self.known.candidates(connection, digest, hashes)
+            for other in candidates:
+                if other != without and self._has(other, values):
+                    frames = [len(stream) for stream in values]
+                    runs = (Run.whole(i, n, other) for i, n in enumerate(frames) if n)
+                    return newest, tuple(runs)
+        return newest, ()
+
+    def _has(self, other: int, values: Sequence[Values]) -> bool:
+        """Say whether the chunks of a clip hold these numbers of all streams, without loss."""
+        try:
+            opened = OpenedClip(self.db, other, self.models)
+            numbers = range(len(opened.streams))
+            shapes = [(opened.own_frames(i), len(opened.streams[i].columns)) for i in numbers]
+            return (
+                shapes == [stream.shape for stream in values]
+                and all(opened.codec(i).lossless for i in numbers)
+                and all(
+                    opened.own_rows(i).values.tobytes() == values[i].tobytes()
+                    for i in numbers
+                    if values[i].size
+                )
+            )
+        except MocapressError:
+            return False  # it is damaged, or gone
 
     @property
     def _models(self) -> tuple[Model, ...]:
@@ -171,6 +210,23 @@ class Coder:
     def _anchors(self, clip: Clip, runs: Sequence[Run]) -> Hashes | None:
         own = without_runs(clip, runs).values
         return anchors(own) if self.codec.lossless and own.size else None
+
+
+def _without_chunks(mcz: Mcz) -> Mcz:
+    """Give a file that is the same but for its frames."""
+    assert mcz.head is not None
+    streams = [replace(stream, frames=0, model=b"") for stream in mcz.head.streams]
+    parts: list[bytes] = []
+    writer = MczWriter(parts.append)
+    writer.head(replace(mcz.head, streams=tuple(streams)))
+    if mcz.original is not None:
+        writer.original(mcz.original)
+    for companion in mcz.companions:
+        writer.companion(companion)
+    if mcz.notes:
+        writer.notes(mcz.notes)
+    writer.end()
+    return open_mcz(Source(b"".join(parts)))
 
 
 def shared(

@@ -23,6 +23,8 @@ _LEAST_DIFFERENT = 16
 _MOST_OWNERS = 16
 """An anchor of more clips is a pose that many take, such as that of calibration."""
 _MOST_CANDIDATES = 4
+_MOST_SHIFTS = 64
+"""Of one clip: a take from which so many pieces were cut is still found in it, piece by piece."""
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _HALF = np.uint64(32)
 
@@ -187,10 +189,11 @@ def find_runs(
             rows = opened.own_rows(stream).values
         except (MocapressError, OSError, sqlite3.Error):
             continue  # it is damaged, or gone: nothing is shared with it
-        for shift in _shifts(hashes, row_hashes(rows)):
+        others = row_hashes(rows)
+        for shift in _shifts(hashes, others):
             runs += [
                 Run(stream, first, last - first, clip, first + shift)
-                for first, last in _equal(values, hashes, rows, shift, free)
+                for first, last in _equal(values, hashes, rows, others, shift, free)
             ]
     return sorted(runs)
 
@@ -214,20 +217,29 @@ def _shifts(hashes: Hashes, others: Hashes) -> list[int]:
     hit = others[order][places] == hashes
     found = order[places[hit]] - np.flatnonzero(hit)
     shifts, counts = np.unique(found, return_counts=True)
-    best = np.argsort(-counts, kind="stable")[:_MOST_CANDIDATES]
+    best = np.argsort(-counts, kind="stable")[:_MOST_SHIFTS]
     frequent = [int(shifts[i]) for i in best if counts[i] >= _LEAST_DIFFERENT]
     return [*dict.fromkeys([*frequent, 0])]
 
 
 def _equal(
-    values: Values, hashes: Hashes, rows: Values, shift: int, free: NDArray[np.bool_]
+    values: Values,
+    hashes: Hashes,
+    rows: Values,
+    others: Hashes,
+    shift: int,
+    free: NDArray[np.bool_],
 ) -> list[tuple[int, int]]:
     """Give the runs of frames i that are the rows i + shift; they are then no longer free."""
     first, last = max(0, -shift), min(len(values), len(rows) - shift)
     if first >= last:
         return []
-    mine, others = values[first:last].view(np.int64), rows[first + shift : last + shift]
-    equal = (mine == np.ascontiguousarray(others).view(np.int64)).all(axis=1) & free[first:last]
+    equal = (hashes[first:last] == others[first + shift : last + shift]) & free[first:last]
+    alike = np.flatnonzero(equal) + first
+    mine, theirs = (
+        np.ascontiguousarray(part).view(np.int64) for part in (values[alike], rows[alike + shift])
+    )
+    equal[alike - first] = (mine == theirs).all(axis=1)
     edges = np.flatnonzero(np.diff(equal, prepend=False, append=False)) + first
     runs = []
     for begin, end in zip(edges[0::2].tolist(), edges[1::2].tolist(), strict=True):

@@ -115,7 +115,7 @@ def standard_motion(
         When the mapping names what is not there.
     UnsupportedError
         When there is no skeleton, or bones stretch; when joints are missing, which are named; when
-        there are no frames, or less than one a second, or a place is not a usable number.
+        there are no frames, or less than one a second, or a joint's place is never a usable number.
 
     """
     if clip.skeleton is None:
@@ -138,11 +138,11 @@ def standard_motion(
     if (part < 1e-6).all():
         needed = before
     all_places = positions(clip.with_frames(clip.values[needed], clip.frame_time))
-    if not (np.abs(all_places) < _FAR).all():
-        what = "search needs places that are numbers, none of them huge"
-        raise UnsupportedError(what, file=_name(clip))
-    found = _correspondence(clip, mapping, all_places)
+    usable = (np.abs(all_places) < _FAR).all(axis=(1, 2))
+    found = _correspondence(clip, mapping, all_places[usable])
     places = _sixteen(all_places, found)
+    if not usable.all():
+        places = _without_gaps(places, needed, _name(clip))
     if needed is not before:
         low = np.searchsorted(needed, before)
         high = np.searchsorted(needed, np.minimum(before + 1, clip.frames - 1))
@@ -162,6 +162,9 @@ def _correspondence(clip: Clip, mapping: Mapping[str, str] | None, places: Array
     missing = [joint for joint in REQUIRED if joint not in named]
     if not missing:
         return named
+    if not len(places):
+        what = "search needs frames in which all places are numbers, none of them huge"
+        raise UnsupportedError(what, file=_name(clip))
     found = by_topology(clip.skeleton, places[:: 1 + len(places) // _LOOKED_AT]) | own
     if all(joint in found for joint in REQUIRED):
         return found
@@ -172,6 +175,20 @@ def _correspondence(clip: Clip, mapping: Mapping[str, str] | None, places: Array
         found=" ".join(clip.skeleton.names[:20])
         + (" ..." if len(clip.skeleton.names) > 20 else ""),
     )
+
+
+def _without_gaps(places: Array, frames: NDArray[np.intp], name: str | None) -> Array:
+    """Give (F, 16, 3) with places that are no usable numbers on the way between those around."""
+    usable: NDArray[np.bool_] = np.all(np.abs(places) < _FAR, axis=2)
+    if not usable.any(axis=0).all():
+        what = "search needs places that are numbers, none of them huge"
+        raise UnsupportedError(what, file=name)
+    for joint in np.flatnonzero(~usable.all(axis=0)):
+        good = usable[:, joint]
+        for axis in range(3):
+            known = places[good, joint, axis]
+            places[:, joint, axis] = np.interp(frames, frames[good], known)
+    return places
 
 
 def _sixteen(places: Array, found: Mapping[str, int]) -> Array:

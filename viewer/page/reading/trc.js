@@ -13,7 +13,7 @@ const [NUMBERS, SAME, TEXTS, SERIES] = [0, 1, 2, 3]; // kinds of columns: docs/f
  * @throws {FileError} where there are no markers in it, or rows are missing
  */
 export function readTrc(bytes) {
-  const lines = textOf(bytes).split(/\r\n|\n/);
+  const lines = textOf(bytes).split(/\r\n?|\n/);
   const named = lines.findIndex((line) => bare(line).startsWith("Frame"));
   if (named < 0) throw new FileError("no line of labels", { expected: "one that begins with Frame#" });
   const delimiter = /^"?Frame[^\t,;]*([\t,;])/.exec(lines[named].trimStart())?.[1] ?? "\t";
@@ -40,7 +40,7 @@ export function readTrc(bytes) {
         found: `${row.length}, ${quoted(row.join(" "))}`,
       });
     }
-    columns.forEach((column, place) => (column[i] = numberOf(row[place + BEFORE])));
+    columns.forEach((column, place) => (column[i] = numberOf(pointed(row[place + BEFORE]))));
   });
   return clipOf(lines[named], facts, delimiter, columns, rows.length);
 }
@@ -82,7 +82,7 @@ export function describedTrc(record, channels) {
     if (kind === NUMBERS) return stored.next().value;
     return new Float64Array(rows).fill(kind === SAME ? numberOf(text) : NaN);
   });
-  const lines = header.split(/\r\n|\n/);
+  const lines = header.split(/\r\n?|\n/);
   const named = lines.findLast((line) => bare(line).startsWith("Frame")) ?? "";
   const frames = channels[0]?.length ?? rows;
   return clipOf(named, factsOf(lines, delimiter), delimiter, columns.slice(BEFORE), frames);
@@ -92,7 +92,7 @@ function clipOf(line, facts, delimiter, columns, frames) {
   const labels = line.split(delimiter).slice(BEFORE).map(bare).filter(Boolean);
   const count = Math.min(labels.length, Math.floor(columns.length / 3));
   if (!count) throw new FileError("no markers in the table", { expected: "three columns for each" });
-  const rate = Number(facts.get("DataRate") ?? NaN);
+  const rate = Number(pointed(facts.get("DataRate") ?? "NaN"));
   return markerClip({
     labels: labels.slice(0, count),
     unit: facts.get("Units") ?? "",
@@ -114,11 +114,20 @@ function numberOf(cell) {
   return cell.trim() ? Number(cell) : NaN;
 }
 
+/** With a decimal point where there is a comma. */
+function pointed(cell) {
+  return cell.replace(",", ".");
+}
+
 function bare(cell) {
   return cell.trim().replace(/^"|"$/g, "");
 }
 
 function textOf(bytes) {
+  const mark = bytes.length > 1 ? bytes[0] * 256 + bytes[1] : 0;
+  if (mark === 0xfffe || mark === 0xfeff) {
+    return new TextDecoder(mark === 0xfffe ? "utf-16le" : "utf-16be").decode(bytes);
+  }
   try {
     return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
   } catch {

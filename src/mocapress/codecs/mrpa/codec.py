@@ -7,6 +7,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapress.codecs.chunks import check_frames
 from mocapress.codecs.contract import (
     NO_OTHERS,
     Capabilities,
@@ -130,5 +131,9 @@ class Mrpa(Codec):
 
         """
         plan = coding.unpack_header(header, columns)
+        # Segments of the paper may be longer than chunks.
+        most = _MOST_FRAMES if self.mode == "published" else self.chunk
+        for chunk in chunks:
+            check_frames("MRPA chunk", chunk, most)
         values = [coding.decode_chunk(chunk, plan, self.mantissa_limit, others) for chunk in chunks]
         return np.concatenate([np.empty((0, len(columns))), *values])[:stop]
