@@ -15,6 +15,9 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kMostNumber = 1 << 29;
 // By how much a knot that is off costs more for each frame, in the block behind it.
 constexpr double kNextBlock = 0.1;
+// Bits beyond the cheapest way to choose numbers at which another is given up: while cuts are
+// compared, and for the blocks of the best.
+constexpr double kHaste = 4, kCare = 12;
 
 // Bits that a decision costs of this chance, in 1/65536.
 double bits_of(int chance) {
@@ -104,16 +107,16 @@ std::int32_t cheapest(std::int32_t number, double& cost, Cost&& cost_of) {
 template <class Vector>
 class Trellis {
  public:
-  // An error of 1 has a `cost` when squared.
-  Trellis(Coder& coder, const Target& target, const Around& around, double cost)
-      : coder_(coder), target_(target), around_(around), cost_(cost) {
+  // An error of 1 has a `cost` when squared. What is costlier by `hopeless` is given up.
+  Trellis(Coder& coder, const Target& target, const Around& around, double cost, double hopeless)
+      : coder_(coder), target_(target), around_(around), cost_(cost), hopeless_(hopeless) {
     ways_[0].cost = 0;
   }
 
   // Goes on to sine k, which is so high.
   MOCAPRESS_IN_PLACE void add(const Block& block, int k, double height) {
     const Surroundings found = surroundings(around_, block, k);
-    const double steps = std::fabs(height) / target_.step, most = least() + hopeless();
+    const double steps = std::fabs(height) / target_.step, most = least() + hopeless_;
     std::array<Way, kStates> next;
     auto& links = links_.emplace_back();
     std::vector<std::pair<Nearest, MagnitudeCosts<Vector>>> known;
@@ -170,15 +173,18 @@ class Trellis {
     return std::min_element(ways_.begin(), ways_.end(),
                             [](const Way& one, const Way& other) { return one.cost < other.cost; });
   }
-  // By how much a way may be costlier than the cheapest.
-  double hopeless() const { return 8 * target_.bit_cost; }
-
   Coder& coder_;
   const Target& target_;
   const Around& around_;
-  double cost_;
+  double cost_, hopeless_;
   std::array<Way, kStates> ways_;
   std::vector<std::array<Link, kStates>> links_;
+};
+
+// How carefully a block is chosen.
+struct Care {
+  double hopeless;   // of the ways to choose numbers, in bits beyond the cheapest
+  bool tries_knots;  // beside the nearest
 };
 
 // What the square of an error costs in a block, on average, and at its end.
@@ -195,8 +201,8 @@ struct Costs {
 // One block with this knot, its numbers and its curve.
 template <class Vector>
 MOCAPRESS_IN_PLACE Cut block_of(Coder& coder, const Plan& plan, const Target& target,
-                                const Around& around, const Costs& costs, int start, int length,
-                                double last, std::int32_t knot) {
+                                const Around& around, const Costs& costs, const Care& care,
+                                int start, int length, double last, std::int32_t knot) {
   const int n = length;
   const double* const wanted = target.values + start;
   const double cost = costs.middle;
@@ -234,7 +240,7 @@ MOCAPRESS_IN_PLACE Cut block_of(Coder& coder, const Plan& plan, const Target& ta
     }
     return target.bit_cost * bits;
   };
-  Trellis<Vector> trellis(coder, target, around, cost);
+  Trellis<Vector> trellis(coder, target, around, cost, care.hopeless * target.bit_cost);
   double best = rest + class_cost(0);
   int best_class = 0, k = 1;
   std::vector<std::int32_t> numbers;
@@ -268,7 +274,8 @@ MOCAPRESS_IN_PLACE Cut block_of(Coder& coder, const Plan& plan, const Target& ta
 // One block, with the best of the knots that are tried.
 template <class Vector>
 MOCAPRESS_IN_PLACE Cut block_with(Coder& coder, const Plan& plan, const Target& target,
-                                  const Around& around, int start, int length, double last) {
+                                  const Around& around, const Care& care, int start, int length,
+                                  double last) {
   const Costs costs(target.costs + start, length);
   const double knot_step = target.step * plan.knot;
   const double wanted = target.values[start + length - 1];
@@ -285,10 +292,10 @@ MOCAPRESS_IN_PLACE Cut block_with(Coder& coder, const Plan& plan, const Target& 
                                      [&](auto knot) { return cost_of(knot, 1 + 0.15 * length); });
   Cut best;
   double least = kInfinite;
-  for (int i = 0; i < (target.tries_knots ? 4 : 1); ++i) {
+  for (int i = 0; i < (care.tries_knots ? 4 : 1); ++i) {
     const std::int32_t knot = std::array{near, near - 1, near + 1, 0}[static_cast<std::size_t>(i)];
     if (i == 3 && std::abs(near) < 2) break;
-    Cut cut = block_of<Vector>(coder, plan, target, around, costs, start, length, last, knot);
+    Cut cut = block_of<Vector>(coder, plan, target, around, costs, care, start, length, last, knot);
     const double cost = cut.cost + cost_of(knot, 1 + kNextBlock * length);
     if (cost >= least) continue;
     least = cost;
@@ -299,40 +306,62 @@ MOCAPRESS_IN_PLACE Cut block_with(Coder& coder, const Plan& plan, const Target& 
 }
 
 MOCAPRESS_WIDE [[gnu::flatten]] Cut wide_block(Coder& coder, const Plan& plan, const Target& target,
-                                               const Around& around, int start, int length,
-                                               double last) {
-  return block_with<Wide>(coder, plan, target, around, start, length, last);
+                                               const Around& around, const Care& care, int start,
+                                               int length, double last) {
+  return block_with<Wide>(coder, plan, target, around, care, start, length, last);
 }
 
 [[gnu::flatten]] Cut narrow_block(Coder& coder, const Plan& plan, const Target& target,
-                                  const Around& around, int start, int length, double last) {
-  return block_with<Narrow>(coder, plan, target, around, start, length, last);
+                                  const Around& around, const Care& care, int start, int length,
+                                  double last) {
+  return block_with<Narrow>(coder, plan, target, around, care, start, length, last);
 }
 
-}  // namespace
+Cut block(Coder& coder, const Plan& plan, const Target& target, const Around& around,
+          const Care& care, int start, int length, double last) {
+  return is_wide() ? wide_block(coder, plan, target, around, care, start, length, last)
+                   : narrow_block(coder, plan, target, around, care, start, length, last);
+}
 
-Cut search(Coder& coder, std::size_t i, const Plan& plan, const Target& target, const Block* before,
-           int start, int length, double last) {
+void append(Cut& cut, Cut more) {
+  for (Piece& piece : more.pieces) cut.pieces.push_back(std::move(piece));
+  cut.curve.insert(cut.curve.end(), more.curve.begin(), more.curve.end());
+}
+
+// The cheapest cut, its blocks chosen in haste.
+Cut roughly(Coder& coder, std::size_t i, const Plan& plan, const Target& target,
+            const Block* before, int start, int length, double last) {
   const Around around = coder.around(i, before, start, length);
-  Cut whole = is_wide() ? wide_block(coder, plan, target, around, start, length, last)
-                        : narrow_block(coder, plan, target, around, start, length, last);
+  Cut whole = block(coder, plan, target, around, {kHaste, false}, start, length, last);
   if (length <= kShortest) return whole;
   const int chance = Mixing<Narrow>::chance(coder.splits.at(split_context(around, length)), 0);
   whole.cost += target.bit_cost * bits_of(chance, false);
   const int half = length / 2;
-  Cut first = search(coder, i, plan, target, before, start, half, last);
+  Cut first = roughly(coder, i, plan, target, before, start, half, last);
   if (first.cost >= whole.cost) return whole;
-  const Cut second = search(coder, i, plan, target, &first.pieces.back().block, start + half, half,
-                            first.curve.back());
+  Cut second = roughly(coder, i, plan, target, &first.pieces.back().block, start + half, half,
+                       first.curve.back());
   const double cost = first.cost + second.cost + target.bit_cost * bits_of(chance, true);
   if (cost >= whole.cost) return whole;
   first.cost = cost;
-  for (const Piece& piece : second.pieces) {
-    first.pieces.push_back(piece);
-    first.pieces.back().block.numbers = first.pieces.back().numbers.data();
-  }
-  first.curve.insert(first.curve.end(), second.curve.begin(), second.curve.end());
+  append(first, std::move(second));
   return first;
+}
+
+}  // namespace
+
+Cut search(Coder& coder, std::size_t i, const Plan& plan, const Target& target, int length,
+           double last) {
+  const Cut rough = roughly(coder, i, plan, target, nullptr, 0, length, last);
+  Cut found;
+  for (const Piece& piece : rough.pieces) {
+    const auto [start, own] = std::pair(piece.block.start, piece.block.length);
+    const Block* const before = found.pieces.empty() ? nullptr : &found.pieces.back().block;
+    append(found, block(coder, plan, target, coder.around(i, before, start, own),
+                        {kCare, target.tries_knots}, start, own, last));
+    last = found.curve.back();
+  }
+  return found;
 }
 
 }  // namespace mocapress::near
