@@ -21,7 +21,7 @@ constexpr int kMostExponent = 4096;
 
 // Whether a part of a channel is cut into halves, and all of a block.
 template <class Vector>
-MOCAPRESS_IN_PLACE bool read_part(Coder& coder, RangeReading& side, std::size_t i,
+MOCAPRESS_IN_PLACE bool part_with(Coder& coder, RangeReading& side, std::size_t i,
                                   const Around& around, Block& block) {
   if (block.length > kShortest && coder.split<Vector>(side, around, block.length, false))
     return true;
@@ -29,14 +29,23 @@ MOCAPRESS_IN_PLACE bool read_part(Coder& coder, RangeReading& side, std::size_t 
   return false;
 }
 
-MOCAPRESS_WIDE [[gnu::flatten]] bool wide_part(Coder& coder, RangeReading& side, std::size_t i,
-                                               const Around& around, Block& block) {
-  return read_part<Wide>(coder, side, i, around, block);
+template <class Vector>
+MOCAPRESS_WIDE MOCAPRESS_FLATTEN bool wide_part(Coder& coder, RangeReading& side, std::size_t i,
+                                                const Around& around, Block& block) {
+  return part_with<Vector>(coder, side, i, around, block);
 }
 
-[[gnu::flatten]] bool narrow_part(Coder& coder, RangeReading& side, std::size_t i,
-                                  const Around& around, Block& block) {
-  return read_part<Narrow>(coder, side, i, around, block);
+MOCAPRESS_FLATTEN bool narrow_part(Coder& coder, RangeReading& side, std::size_t i,
+                                   const Around& around, Block& block) {
+  return part_with<Narrow>(coder, side, i, around, block);
+}
+
+bool read_part(Coder& coder, RangeReading& side, std::size_t i, const Around& around,
+               Block& block) {
+  if constexpr (kMayBeWide) {
+    if (is_wide()) return wide_part<Wide>(coder, side, i, around, block);
+  }
+  return narrow_part(coder, side, i, around, block);
 }
 
 class Decoding {
@@ -116,9 +125,7 @@ class Decoding {
     const Block* const before = channel.blocks.empty() ? nullptr : &channel.blocks.back();
     const Around around = coder_.around(i, before, start, length);
     Block block{start, length};
-    const bool is_cut = is_wide() ? wide_part(coder_, side_, i, around, block)
-                                  : narrow_part(coder_, side_, i, around, block);
-    if (is_cut) {
+    if (read_part(coder_, side_, i, around, block)) {
       tree(i, start, length / 2, last);
       tree(i, start + length / 2, length / 2, last);
       return;
@@ -157,15 +164,8 @@ Prediction prediction_of(const Coder& coder, const Plan& plan) {
 
 void turn_back(double* values, std::size_t frames, const Plan& plan,
                const std::vector<Angles>& starts) {
-  const std::size_t columns = plan.steps.size();
   for (std::size_t t = 0; t < plan.turnings.size(); ++t) {
-    const Turning& turning = plan.turnings[t];
-    Angles last = starts[t];
-    for (std::size_t f = 0; f < frames; ++f) {
-      double* const own = values + f * columns + turning.first;
-      last = to_file(turning, plan.radians, {own[0], own[1], own[2]}, last);
-      std::copy_n(last.begin(), 3, own);
-    }
+    to_file(plan.turnings[t], plan.radians, values, plan.steps.size(), frames, starts[t]);
   }
 }
 

@@ -165,14 +165,12 @@ class Coder : public Models {
   // Moves the usual magnitudes of the bands towards those of a block.
   static void remember(std::array<int, kSpectrum>& usual, const Block& block) {
     const int end = end_of(block.of_class, block.length);
-    int k = 1;
-    while (k < block.length) {
-      const int band = bands().fine(k, block.length), first = k;
+    int next = 1;
+    for (int k = 1; k < block.length; k = next) {
+      next = bands().behind(k, block.length);
       int sum = 0;
-      for (; k < block.length && bands().fine(k, block.length) == band; ++k) {
-        if (k <= end) sum += magnitude_at(&block, k);
-      }
-      const int count = k - first;
+      for (int i = k; i < std::min(next, end + 1); ++i) sum += magnitude_at(&block, i);
+      const int band = bands().fine(k, block.length), count = next - k;
       int& value = usual[static_cast<std::size_t>(band)];
       value += ((256 * sum / count - value) * rate_of(count)) >> 8;
     }

@@ -40,10 +40,17 @@ class Bands {
         coarse_[place] = static_cast<std::uint8_t>(std::min(thirds(3840 * k / length) / 2, 9));
         fine_[place] = static_cast<std::uint8_t>(std::min(thirds(7680 * k / length), 26));
       }
+      int behind = length;
+      for (int k = length - 1; k > 0; --k) {
+        if (k + 1 < length && fine(k, length) != fine(k + 1, length)) behind = k + 1;
+        behind_[place_of(k, length)] = static_cast<std::uint16_t>(behind);
+      }
     }
   }
   int coarse(int k, int length) const { return coarse_[place_of(k, length)]; }
   int fine(int k, int length) const { return fine_[place_of(k, length)]; }
+  // The first sine behind the fine band of sine k.
+  int behind(int k, int length) const { return behind_[place_of(k, length)]; }
 
  private:
   static std::size_t place_of(int k, int length) {
@@ -51,6 +58,7 @@ class Bands {
   }
 
   std::array<std::uint8_t, std::size_t{2} * kLongest> coarse_{}, fine_{};
+  std::array<std::uint16_t, std::size_t{2} * kLongest> behind_{};
 };
 
 inline const Bands& bands() {

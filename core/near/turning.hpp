@@ -28,7 +28,8 @@ using Angles = std::array<double, 3>;
 
 // From the file's angles to the curves'; `last` are these in the frame before.
 Angles to_curves(const Turning& turning, bool radians, const Angles& file, const Angles& last);
-// And back; `last` are the file's in the frame before.
-Angles to_file(const Turning& turning, bool radians, const Angles& curves, const Angles& last);
+// And back, in rows of so many columns; `last` are the file's in the frame before the first.
+void to_file(const Turning& turning, bool radians, double* rows, std::size_t columns,
+             std::size_t frames, Angles last);
 
 }  // namespace mocapress::near

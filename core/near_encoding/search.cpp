@@ -305,22 +305,26 @@ MOCAPRESS_IN_PLACE Cut block_with(Coder& coder, const Plan& plan, const Target& 
   return best;
 }
 
-MOCAPRESS_WIDE [[gnu::flatten]] Cut wide_block(Coder& coder, const Plan& plan, const Target& target,
-                                               const Around& around, const Care& care, int start,
-                                               int length, double last) {
-  return block_with<Wide>(coder, plan, target, around, care, start, length, last);
+template <class Vector>
+MOCAPRESS_WIDE MOCAPRESS_FLATTEN Cut wide_block(Coder& coder, const Plan& plan,
+                                                const Target& target, const Around& around,
+                                                const Care& care, int start, int length,
+                                                double last) {
+  return block_with<Vector>(coder, plan, target, around, care, start, length, last);
 }
 
-[[gnu::flatten]] Cut narrow_block(Coder& coder, const Plan& plan, const Target& target,
-                                  const Around& around, const Care& care, int start, int length,
-                                  double last) {
+MOCAPRESS_FLATTEN Cut narrow_block(Coder& coder, const Plan& plan, const Target& target,
+                                   const Around& around, const Care& care, int start, int length,
+                                   double last) {
   return block_with<Narrow>(coder, plan, target, around, care, start, length, last);
 }
 
-Cut block(Coder& coder, const Plan& plan, const Target& target, const Around& around,
-          const Care& care, int start, int length, double last) {
-  return is_wide() ? wide_block(coder, plan, target, around, care, start, length, last)
-                   : narrow_block(coder, plan, target, around, care, start, length, last);
+Cut best_block(Coder& coder, const Plan& plan, const Target& target, const Around& around,
+               const Care& care, int start, int length, double last) {
+  if constexpr (kMayBeWide) {
+    if (is_wide()) return wide_block<Wide>(coder, plan, target, around, care, start, length, last);
+  }
+  return narrow_block(coder, plan, target, around, care, start, length, last);
 }
 
 void append(Cut& cut, Cut more) {
@@ -332,7 +336,7 @@ void append(Cut& cut, Cut more) {
 Cut roughly(Coder& coder, std::size_t i, const Plan& plan, const Target& target,
             const Block* before, int start, int length, double last) {
   const Around around = coder.around(i, before, start, length);
-  Cut whole = block(coder, plan, target, around, {kHaste, false}, start, length, last);
+  Cut whole = best_block(coder, plan, target, around, {kHaste, false}, start, length, last);
   if (length <= kShortest) return whole;
   const int chance = Mixing<Narrow>::chance(coder.splits.at(split_context(around, length)), 0);
   whole.cost += target.bit_cost * bits_of(chance, false);
@@ -357,8 +361,8 @@ Cut search(Coder& coder, std::size_t i, const Plan& plan, const Target& target, 
   for (const Piece& piece : rough.pieces) {
     const auto [start, own] = std::pair(piece.block.start, piece.block.length);
     const Block* const before = found.pieces.empty() ? nullptr : &found.pieces.back().block;
-    append(found, block(coder, plan, target, coder.around(i, before, start, own),
-                        {kCare, target.tries_knots}, start, own, last));
+    append(found, best_block(coder, plan, target, coder.around(i, before, start, own),
+                             {kCare, target.tries_knots}, start, own, last));
     last = found.curve.back();
   }
   return found;

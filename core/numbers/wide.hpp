@@ -6,15 +6,28 @@
 #if defined(__x86_64__) && defined(__GNUC__) && defined(__linux__) && !defined(__clang__) && \
     !defined(MOCAPRESS_NO_CLONES)
 #define MOCAPRESS_WIDE __attribute__((target("avx2,bmi,bmi2,lzcnt")))
+#define MOCAPRESS_MAY_BE_WIDE 1
 #else
 #define MOCAPRESS_WIDE
+#define MOCAPRESS_MAY_BE_WIDE 0
+#endif
+
+// Compiles all that a function calls in place. Where kernels are only checked, which takes the
+// compiler minutes, it does nothing.
+#if defined(FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION) || defined(MOCAPRESS_NO_CLONES)
+#define MOCAPRESS_FLATTEN
+#else
+#define MOCAPRESS_FLATTEN [[gnu::flatten]]
 #endif
 
 namespace mocapress {
 
+// Whether wide functions are there at all: where they are not, `if constexpr` spares the compiler
+// those that are templates.
+inline constexpr bool kMayBeWide = MOCAPRESS_MAY_BE_WIDE != 0;
+
 inline bool is_wide() {
-#if defined(__x86_64__) && defined(__GNUC__) && defined(__linux__) && !defined(__clang__) && \
-    !defined(MOCAPRESS_NO_CLONES)
+#if MOCAPRESS_MAY_BE_WIDE
   static const bool kWide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
   return kWide;
 #else

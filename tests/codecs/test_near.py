@@ -253,6 +253,13 @@ def test_odd_clips_keep_the_bound(clip: Clip) -> None:
     assert errors.max() <= 0.1
 
 
+def test_a_figure_without_frames_comes_back(samples: Path) -> None:
+    for clip in (arm(5)[:0], mp.read(samples / "cmu_01_01.amc")[:0]):
+        for asked in ("max=0.1cm", "quality=3", "rate=2"):
+            back = decoded_by(mp.codec(f"near:{asked}"), clip)
+            assert back.values.shape == (0, clip.channels)
+
+
 def test_jumps_keep_the_bound() -> None:
     clip = arm(260)
     values = clip.values.copy()

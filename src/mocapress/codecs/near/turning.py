@@ -44,6 +44,8 @@ def turnings_of(
     The cost of an order is the bits of the waves of the three curves, at steps of the scale divided
     by the curves' levers, in windows of the clip.
     """
+    if len(values) < 2:
+        return []
     named = [(column.joint, column.kind) for column in columns]
     found: list[Turning] = []
     for first, *orders in _core.near_turnable(measure.core, named):
@@ -51,7 +53,7 @@ def turnings_of(
         if (np.abs(own) < _MOST).all() and (own != own[0]).any(axis=0).all():
             places, axes, curves, _ = orders
             found.append((first, places, axes, curves, 0))
-    if not found or len(values) < 2:
+    if not found:
         return []
     moderate = np.where(np.abs(values) < 1e9, values, 0.0)
     sample = _windows(moderate)
