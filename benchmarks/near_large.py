@@ -41,7 +41,7 @@ def row(folder: Path, goal: str, frames: int) -> list[str]:
         if count >= frames:
             break
     values = np.concatenate([part.values for part in parts])[:frames]
-    clip = parts[0].with_values(values)
+    clip = parts[0].with_frames(values, parts[0].frame_time)
     del parts, values
     near = codec(f"near:{goal}")
     assert isinstance(near, Near)

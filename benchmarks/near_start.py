@@ -8,7 +8,7 @@ subjects of near_acl.tsv, by which `near` is measured, none is learned from.
 
 import argparse
 from collections.abc import Iterator, Sequence
-from math import inf, log2
+from math import gcd, inf, log2
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +28,8 @@ Values = NDArray[np.float64]
 SUBJECTS = ("02", "06", "07", "08", "10", "11", "12", "20", "39", "43", "55", "83")
 LONGEST, APART = 350, 700
 """Frames of a window, and from one to the next within a clip."""
+STRIDE = 29
+"""From one window to the next that is learned from."""
 SCALES = {"fine": (0.0085, 0.012), "middling": (0.085, 0.04, 0.28), "coarse": (1.6, 1.1)}
 """Centimetres; windows take them in turn."""
 CURVES = {"root": 2, "rhumerus": 4, "lhumerus": 4, "rfemur": 1, "lfemur": 1}
@@ -83,6 +85,13 @@ def windows(corpus: Path) -> Iterator[Window]:
             for start in range((clip.frames % APART) // 3, clip.frames, APART):
                 if clip.frames - start >= 2 * GROUP:
                     yield Window(clip[start : start + LONGEST])
+
+
+def mixed(all_windows: Sequence[Window]) -> list[Window]:
+    """Give windows in an order in which those of a subject are far apart: the last count most."""
+    count = len(all_windows)
+    stride = next(each for each in range(STRIDE, STRIDE + count) if gcd(each, count) == 1)
+    return [all_windows[i * stride % count] for i in range(count)]
 
 
 def write(path: Path, numbers: Sequence[float], width: int) -> None:
@@ -145,7 +154,6 @@ def header_of(window: Window, exponents: NDArray[np.int64], scale: float, start:
         relative < 1.6e-4,
         (0.0, 0.0),
         6 if relative < 2e-4 else 4,
-        64 if relative < 4e-4 else 61,
         [base + int(each) for each in exponents],
         window.joints,
         window.turnings,
@@ -168,6 +176,7 @@ def waves_of(
         header,
         scale,
         0.12,
+        False,
         np.ones(window.measure.points),
         np.full(window.measure.points, inf),
         np.full(window.values.shape[1], inf),
@@ -257,7 +266,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--only", choices=SCALES, help="this start alone")
     asked = parser.parse_args(argv)
-    all_windows = list(windows(asked.corpus))
+    all_windows = mixed(list(windows(asked.corpus)))
     print(len(all_windows), "windows,", sum(len(each.values) for each in all_windows), "frames")
     exponents = figure(all_windows, asked.folder)
     for start, (name, scales) in enumerate(SCALES.items(), 1):

@@ -23,7 +23,6 @@ constexpr std::size_t kFrames = 600, kChannels = 12;
 near::Plan plan_of() {
   near::Plan plan;
   plan.knot = 0.75;
-  plan.first = 61.0 / 64;
   for (std::size_t c = 0; c < kChannels; ++c) {
     plan.steps.push_back(near::step_of(static_cast<int>(32 * (c % 5)) - 300));
     plan.joints.of_column.push_back(static_cast<std::int32_t>(c / 3));

@@ -71,11 +71,13 @@ void draw(const Block& block, double left, double step, const Plan& plan, double
   const double knot = block.numbers[0] * (step * plan.knot);
   for (int t = 1; t <= n; ++t) curve[t - 1] = left + knot * t / n;
   const int end = end_of(block.of_class, n);
+  std::size_t state = 0;
   for (int k = 1; k <= end; ++k) {
     const std::int32_t number = block.numbers[k];
+    const bool odd = is_odd(state);
+    state = next_state(state, number);
     if (number == 0) continue;
-    const double first = number == 1 ? plan.first : number == -1 ? -plan.first : number;
-    const double height = first * step;
+    const double height = height_of(number, odd) * step;
     const double* const wave = sine(n, k).data();
     for (int t = 0; t < n - 1; ++t) curve[t] += wave[t] * height;
   }

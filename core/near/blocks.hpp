@@ -46,6 +46,24 @@ struct Block {
   std::int32_t* numbers = nullptr;
 };
 
+// Sines are rounded by two quantisers in turn, one with the even multiples of half a step, one with
+// the odd ones and 0. Which is next follows from which numbers before were odd, by eight states.
+inline constexpr std::array<std::array<std::uint8_t, 2>, 8> kNextState = {
+    {{0, 2}, {2, 0}, {4, 6}, {6, 4}, {5, 7}, {7, 5}, {1, 3}, {3, 1}}};
+inline constexpr double kHalfStep = 0.5625;  // in steps of the channel
+
+inline std::size_t next_state(std::size_t state, std::int32_t number) {
+  return kNextState[state][number & 1];
+}
+
+inline bool is_odd(std::size_t state) { return state >= 4; }
+
+// How many steps high a sine of this number is.
+inline double height_of(std::int32_t number, bool odd) {
+  const int nearer = !odd || number == 0 ? 0 : number < 0 ? -1 : 1;
+  return (2.0 * number - nearer) * kHalfStep;
+}
+
 // Columns and what moves together with them: the joint of each, and the parent of each joint, both
 // counted in the order in which columns tell them.
 struct Joints {
@@ -60,7 +78,6 @@ struct Plan {
   const Start* start = nullptr;  // what coders begin with; none for nothing
   bool early = true;             // whether the first spans are short
   double knot = 0.5;             // the step of knots, in steps of the channel
-  double first = 1;              // what a coefficient of 1 stands for, in steps
   std::vector<double> steps;
   Joints joints;
   std::vector<Turning> turnings;

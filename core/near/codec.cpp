@@ -177,7 +177,6 @@ Plan read_header(ByteView header, std::size_t columns) {
   plan.early = (flags & 2) == 0;
   plan.radians = (flags & 4) != 0;
   plan.knot = static_cast<double>(record.integer(63) + 1) / 8;
-  plan.first = static_cast<double>(record.integer(63) + 1) / 64;
   const std::int64_t base = record.signed_integer();
   if (base < -kMostExponent || base > kMostExponent) fail("steps out of bounds");
   const auto start = static_cast<int>(record.integer(kStarts));

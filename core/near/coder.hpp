@@ -59,7 +59,7 @@ struct Models {
       kMagnitudeDecisions, {120, 100, kChannelContexts * 10, 24, 100, 120, 144, 144}, 4, 10};
   Model classes{kEnds.size() - 1, {100, 100, kChannelContexts * 10, 24, 100, 100, 120, 100}, 6, 10};
   Model sines{
-      kMagnitudeDecisions, {120, 100, kChannelContexts * 10, 24, 160, 120, 144, 432}, 16, 60};
+      kMagnitudeDecisions + 1, {120, 100, kChannelContexts * 10, 24, 160, 120, 144, 432}, 16, 60};
   Model splits{1, {60, 36, kChannelContexts * 10, 24, 60, 40, 144, 216}, 6, 10};
   Model signs{1, {90, 30, kChannelContexts * 9, 9, 27, 90, 81, kChannelContexts * 9}, 2, 10};
 };
@@ -104,13 +104,17 @@ class Coder : public Models {
     const auto told = [&](int k) { return given.empty() ? 0 : given[static_cast<std::size_t>(k)]; };
     block.numbers = numbers;
     std::fill(numbers, numbers + n, 0);
-    number<Vector>(side, knots.at(knot_context(around, n)), around, block, 0, told(0));
+    const Model::Place of_knot = knots.at(knot_context(around, n));
+    number<Vector>(side, of_knot, Quantiser::only, around, block, 0, told(0));
     const Model::Place of_class = classes.at(class_context(around, n, numbers[0]));
     block.of_class = code_class<Vector>(side, of_class, n, wanted.of_class);
     const int end = end_of(block.of_class, n);
+    std::size_t state = 0;
     for (int k = 1; k <= end; ++k) {
       const Model::Place place = sines.at(number_context(around, block, k));
-      number<Vector>(side, place, around, block, k, told(k));
+      const Quantiser quantiser = is_odd(state) ? Quantiser::odd : Quantiser::even;
+      number<Vector>(side, place, quantiser, around, block, k, told(k));
+      state = next_state(state, numbers[k]);
     }
     remember(channels[i].usual, block);
   }
@@ -126,9 +130,9 @@ class Coder : public Models {
   }
 
   template <class Vector, class Side>
-  MOCAPRESS_IN_PLACE void number(Side& side, const Model::Place& place, const Around& around,
-                                 Block& block, int k, std::int32_t value) {
-    const std::int64_t magnitude = code_magnitude<Vector>(side, place, std::abs(value));
+  MOCAPRESS_IN_PLACE void number(Side& side, const Model::Place& place, Quantiser quantiser,
+                                 const Around& around, Block& block, int k, std::int32_t value) {
+    const std::int64_t magnitude = code_magnitude<Vector>(side, place, quantiser, std::abs(value));
     if (magnitude == 0) return;
     const Model::Place sign = signs.at(sign_context(around, block, k));
     const bool negative = Mixing<Vector>::code(side, sign, 0, value < 0);

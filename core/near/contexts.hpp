@@ -16,6 +16,7 @@ namespace mocapress::near {
 inline constexpr int kBands = 10;
 inline constexpr int kSpectrum = 27;
 inline constexpr std::size_t kChannelContexts = 128;
+inline constexpr int kMostMagnitude = 2047;  // in contexts
 
 // 2 log2 and 3 log2 of 1 + x / 16, the first rounded, the second down.
 inline int halves(int x) {
@@ -85,12 +86,13 @@ inline int seen(const Block* other, int k, int length) {
   int at = apart > 0 ? (k + (1 << (apart - 1))) >> apart : k << -apart;
   at = std::max(at, 1);
   if (at >= other->length) return 0;
-  const int number = std::min(std::abs(other->numbers[at]), 2047);
+  const int number = std::min(std::abs(other->numbers[at]), kMostMagnitude);
   return (16 * number * kRoots[static_cast<std::size_t>(apart) + 5]) >> 8;
 }
 
 inline int magnitude_at(const Block* block, int k) {
-  return block == nullptr || k >= block->length ? 0 : std::min(std::abs(block->numbers[k]), 2047);
+  if (block == nullptr || k >= block->length) return 0;
+  return std::min(std::abs(block->numbers[k]), kMostMagnitude);
 }
 
 // 0: no block; else 1 to 9, its class beside those of blocks of this length.
@@ -152,35 +154,55 @@ inline Context knot_context(const Around& around, int length) {
   return x;
 }
 
-inline Context number_context(const Around& around, const Block& block, int k) {
-  const auto own = [&](int i) { return i < 1 ? 0 : 16 * magnitude_at(&block, i); };
-  const int n = block.length, m1 = own(k - 1), m2 = own(k - 2);
-  const int near = 2 * m1 + m2 + (own(k - 3) + own(k - 4)) / 2;
-  const int before =
-      seen(around.before, k - 1, n) + 2 * seen(around.before, k, n) + seen(around.before, k + 1, n);
+// What the context of a number is made of, but for the numbers of its own block.
+struct Surroundings {
+  int before, beside, further, usual, band, lefts;
+};
+
+inline Surroundings surroundings(const Around& around, const Block& block, int k) {
+  const int n = block.length;
   const auto& [one, two, three] = around.beside;
-  const int beside = 2 * seen(one, k, n) + seen(one, k - 1, n) + seen(one, k + 1, n) +
-                     seen(two, k, n) + seen(three, k, n);
-  const int further =
-      2 * (seen(two, k, n) + seen(three, k, n)) + seen(two, k + 1, n) + seen(three, k + 1, n);
-  const int usual = (*around.usual)[static_cast<std::size_t>(bands().fine(k, n))] / 4;
-  const int band = bands().coarse(k, n);
+  const int left = end_of(block.of_class, n) - k;
+  return {
+      seen(around.before, k - 1, n) + 2 * seen(around.before, k, n) + seen(around.before, k + 1, n),
+      2 * seen(one, k, n) + seen(one, k - 1, n) + seen(one, k + 1, n) + seen(two, k, n) +
+          seen(three, k, n),
+      2 * (seen(two, k, n) + seen(three, k, n)) + seen(two, k + 1, n) + seen(three, k + 1, n),
+      (*around.usual)[static_cast<std::size_t>(bands().fine(k, n))] / 4,
+      bands().coarse(k, n),
+      left == 0  ? 0
+      : left < 3 ? 1
+                 : 2};
+}
+
+// The four magnitudes before a number in its block, the nearest first.
+using Nearest = std::array<int, 4>;
+
+inline Context number_context(const Around& around, const Surroundings& found,
+                              const Nearest& nearest) {
+  const auto& [before, beside, further, usual, band, lefts] = found;
+  const auto& [m1, m2, m3, m4] = nearest;
+  const int near = 32 * m1 + 16 * m2 + 8 * (m3 + m4);
   const int all = (19 * near + 11 * before + 8 * beside) >> 4;
   const int whole = (13 * near + 8 * before + 5 * beside + 3 * further + 13 * usual) >> 4;
-  const int left = end_of(block.of_class, n) - k;
-  const int lefts = left == 0 ? 0 : left < 3 ? 1 : 2;
   Context x;
   x.at = {level(near, 12) * 10 + band,
           level(before, 10) * 10 + level(beside, 10),
           around.channel * 10 + band,
           std::min(23, thirds(whole)),
-          (std::min(3, m1 / 16) * 4 + std::min(3, m2 / 16)) * 10 + level(beside, 10),
+          (std::min(3, m1) * 4 + std::min(3, m2)) * 10 + level(beside, 10),
           level(near, 12) * 10 + level(before, 10),
           level(2 * usual, 12) * 12 + level(near, 12),
           (level(2 * usual, 12) * 12 + level(before + beside, 12)) * 3 + lefts};
   x.first_set = std::min(7, level(all, 16) / 2) + (around.before != nullptr ? 8 : 0);
   x.second_set = std::min(5, level(whole, 12) / 2) * 10 + band;
   return x;
+}
+
+inline Context number_context(const Around& around, const Block& block, int k) {
+  const auto own = [&](int i) { return i < 1 ? 0 : magnitude_at(&block, i); };
+  return number_context(around, surroundings(around, block, k),
+                        {own(k - 1), own(k - 2), own(k - 3), own(k - 4)});
 }
 
 // Of the sign of the knot, k = 0, or a sine.

@@ -266,16 +266,26 @@ inline constexpr int kUnary = 14;
 inline constexpr int kMostLength = 29;
 inline constexpr std::size_t kMagnitudeDecisions = kUnary + 18;
 
+// How a number was rounded: by the only quantiser that there is, or by one of two.
+enum class Quantiser : std::uint8_t { only, even, odd };
+
+// Where the u-th question of a magnitude stands. The first is another one for each of two
+// quantisers.
+inline std::size_t decision_of(int u, Quantiser quantiser) {
+  const bool later = quantiser == Quantiser::odd || (quantiser == Quantiser::even && u > 0);
+  return static_cast<std::size_t>(u) + (later ? 1 : 0);
+}
+
 template <class Vector, class Side>
 MOCAPRESS_IN_PLACE std::int64_t code_magnitude(Side& side, const Model::Place& place,
-                                               std::int64_t value) {
+                                               Quantiser quantiser, std::int64_t value) {
   for (int u = 0; u < kUnary; ++u) {
-    if (!Mixing<Vector>::code(side, place, static_cast<std::size_t>(u), value > u)) return u;
+    if (!Mixing<Vector>::code(side, place, decision_of(u, quantiser), value > u)) return u;
   }
   const std::int64_t above = value - kUnary + 1;
   int length = 0;
   for (; length < kMostLength; ++length) {
-    const auto decision = static_cast<std::size_t>(kUnary + std::min(length, 17));
+    const std::size_t decision = decision_of(kUnary + std::min(length, 17), quantiser);
     if (!Mixing<Vector>::code(side, place, decision, above >> (length + 1) > 0)) break;
   }
   const std::int64_t top = std::int64_t{1} << length;

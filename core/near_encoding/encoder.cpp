@@ -205,8 +205,8 @@ class Encoding {
       costs[f] = costs_[at + c] * raised_[at + c];
     }
     const double bit_cost = task_.rate * task_.scale * task_.scale;
-    const Target target{values.data(), costs.data(), steps_[c], bit_cost};
-    const Cut cut = search(coder_, i, task_.plan, target, nullptr, 0, length, channel.last);
+    const Target target{values.data(), costs.data(), steps_[c], bit_cost, task_.tries_knots};
+    const Cut cut = search(coder_, i, task_.plan, target, length, channel.last);
     std::size_t next = 0;
     write(i, cut, next, 0, length);
     for (std::size_t f = 0; f < n; ++f) values[f] = cut.curve[f] + predicted[f];

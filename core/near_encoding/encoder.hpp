@@ -15,6 +15,7 @@ struct Task {
   Plan plan;
   double scale = 1;                // the step of a channel that moves a point by 1
   double rate = 0.12;              // what a bit is worth, in squares of the scale
+  bool tries_knots = false;        // and not only the nearest, which takes twice the time
   std::vector<double> weights;     // of the points that errors are measured at
   std::vector<double> most;        // error of each point; infinite for no bound
   std::vector<double> value_most;  // error of any value, by channel; infinite for no bound

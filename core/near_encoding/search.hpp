@@ -15,6 +15,7 @@ struct Target {
   const double* costs;
   double step;
   double bit_cost;
+  bool tries_knots;  // and not only the nearest
 };
 
 struct Piece {
@@ -28,8 +29,8 @@ struct Cut {
   std::vector<double> curve;
 };
 
-// The cheapest cut found of frames `start` on, where the channel comes from `last`.
-Cut search(Coder& coder, std::size_t i, const Plan& plan, const Target& target, const Block* before,
-           int start, int length, double last);
+// The cheapest cut found of a span, where the channel comes from `last`; without its cost.
+Cut search(Coder& coder, std::size_t i, const Plan& plan, const Target& target, int length,
+           double last);
 
 }  // namespace mocapress::near

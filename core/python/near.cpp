@@ -89,9 +89,9 @@ Given<double, 2> errors(const near::Measure& measure, const Input<double, 2>& va
 
 std::tuple<nb::bytes, Given<double, 2>, Given<double, 2>> encode(
     const near::Measure& measure, const near::Measure& curves, const Input<double, 2>& values,
-    const nb::bytes& header, double scale, double rate, const Input<double, 1>& weights,
-    const Input<double, 1>& most, const Input<double, 1>& value_most,
-    const Input<std::uint8_t, 2>& kept, int rounds) {
+    const nb::bytes& header, double scale, double rate, bool tries_knots,
+    const Input<double, 1>& weights, const Input<double, 1>& most,
+    const Input<double, 1>& value_most, const Input<std::uint8_t, 2>& kept, int rounds) {
   const std::size_t frames = values.shape(0), channels = values.shape(1);
   const std::size_t points = measure.points(channels);
   if (kept.shape(0) != frames || kept.shape(1) != channels) {
@@ -100,6 +100,7 @@ std::tuple<nb::bytes, Given<double, 2>, Given<double, 2>> encode(
   const near::Task task{near::read_header(view(header), channels),
                         scale,
                         rate,
+                        tries_knots,
                         vector_of(weights, points),
                         vector_of(most, points),
                         vector_of(value_most, channels),
@@ -276,7 +277,7 @@ struct Learning {
   void learn(const near::Measure& measure, const near::Measure& curves,
              const Input<double, 2>& values, const nb::bytes& header, double scale, double rate) {
     const std::size_t frames = values.shape(0), channels = values.shape(1);
-    near::Task task{near::read_header(view(header), channels), scale, rate,
+    near::Task task{near::read_header(view(header), channels), scale, rate, false,
                     std::vector(measure.points(channels), 1.0)};
     near::learn(start, values.data(), frames, task, measure, curves);
   }
@@ -336,8 +337,9 @@ void bind_near(nb::module_& module) {
   module.def("near_unlike", &unlike, nb::arg("measure"), nb::arg("values"), nb::arg("turnings"),
              "Count for each turning the values that come back as other angles of the same turn.");
   module.def("near_encode", &encode, nb::arg("measure"), nb::arg("curves"), nb::arg("values"),
-             nb::arg("header"), nb::arg("scale"), nb::arg("rate"), nb::arg("weights"),
-             nb::arg("most"), nb::arg("value_most"), nb::arg("kept"), nb::arg("rounds"),
+             nb::arg("header"), nb::arg("scale"), nb::arg("rate"), nb::arg("tries_knots"),
+             nb::arg("weights"), nb::arg("most"), nb::arg("value_most"), nb::arg("kept"),
+             nb::arg("rounds"),
              "Code rows as a chunk: its payload, the values that it decodes to, and the errors of\n"
              "joints, (F, J), or without a skeleton of values, (F, C).");
   module.def("near_decode", &decode, nb::arg("header"), nb::arg("payload"),

@@ -12,6 +12,7 @@ from records import CorruptError, Record
 from streams import Bit, Coded, magnitude, symbol, tree
 
 ENDS = (0, 1, 2, 3, 4, 6, 8, 11, 16, 22, 32, 45, 64, 90, 128, 181, 255)
+NEXT = ((0, 2), (2, 0), (4, 6), (6, 4), (5, 7), (7, 5), (1, 3), (3, 1))
 ROOTS = (45, 64, 91, 128, 181, 256, 362, 512, 724, 1024, 1448)
 
 
@@ -89,13 +90,17 @@ class Mixed:
             entry[:] = within(slow, 16, 65519), within(fast, 64, 65471), min(n + 1, 255)
         return bit
 
-    def magnitude(self, stream: Coded, context: Context) -> int:
-        """Take a magnitude."""
+    def magnitude(self, stream: Coded, context: Context, state: int | None = None) -> int:
+        """Take a magnitude; `state` is that of the quantisers, if there are two."""
+
+        def decision(u: int) -> int:
+            return u if state is None else u + int(u > 0 or state >= 4)
+
         for u in range(14):
-            if not self.bit(stream, context, u):
+            if not self.bit(stream, context, decision(u)):
                 return u
         length = 0
-        while length < 29 and self.bit(stream, context, 14 + min(length, 17)):
+        while length < 29 and self.bit(stream, context, decision(14 + min(length, 17))):
             length += 1
         return 13 + (1 << length | stream.raw(length))
 
@@ -279,7 +284,7 @@ def state(block: Block | None) -> int:
 
 
 class Header:
-    """The codec header: knot and one, and of columns steps, joints and these joints' parents."""
+    """The codec header: knot, and of columns steps, joints and these joints' parents."""
 
     def __init__(self, header: bytes, columns: int) -> None:
         record = Record(header)
@@ -287,7 +292,6 @@ class Header:
         flags = record.integer()
         self.early, self.radians, known = flags & 2 == 0, flags & 4 != 0, flags & 8 != 0
         self.knot = (record.integer() + 1) / 8
-        self.one = (record.integer() + 1) / 64
         exponent, start = record.signed(), record.integer()
         self.start = start_of(start - 1, known, tuple(CHANCES.items())) if start else None
         self.firsts = [0.0] * columns
@@ -575,17 +579,27 @@ class Chunk:
             if not self.classes.bit(self.stream, context, block.of_class):
                 break
             block.of_class += 1
+        state = 0
         for k in range(1, min(ENDS[block.of_class], n - 1) + 1):
-            self.number(self.numbers, around.number_context(block, k), around, block, k)
+            self.number(self.numbers, around.number_context(block, k), around, block, k, state)
+            state = NEXT[state][block.numbers[k] % 2]
         self.remember(channel.usual, block)
         channel.blocks.append(block)
         curve = self.curve(block, channel.value, channel.step)
         self.rest += curve
         channel.value = curve[-1]
 
-    def number(self, models: Mixed, context: Context, around: Around, block: Block, k: int) -> None:
+    def number(
+        self,
+        models: Mixed,
+        context: Context,
+        around: Around,
+        block: Block,
+        k: int,
+        state: int | None = None,
+    ) -> None:
         """Take a number with its sign."""
-        size = models.magnitude(self.stream, context)
+        size = models.magnitude(self.stream, context, state)
         if size:
             negative = self.signs.bit(self.stream, around.sign_context(block, k))
             block.numbers[k] = -size if negative else size
@@ -601,14 +615,16 @@ class Chunk:
 
     def curve(self, block: Block, left: float, step: float) -> list[float]:
         """Give the values of a block."""
-        n, one = block.length, self.header.one
+        n, state = block.length, 0
         knot = block.numbers[0] * (step * self.header.knot)
         values = [left + knot * t / n for t in range(1, n + 1)]
         root = math.sqrt(2.0 / n)
         waves = [root * sine_cosine(3.141592653589793 * i / n)[0] for i in range(2 * n)]
         for k, number in enumerate(block.numbers[1:], 1):
+            nearer = 0 if state < 4 or number == 0 else 1 if number > 0 else -1
+            state = NEXT[state][number % 2]
             if number:
-                height = (number if abs(number) > 1 else number * one) * step
+                height = ((2.0 * number - nearer) * 0.5625) * step
                 for t in range(1, n):
                     values[t - 1] += waves[k * t % (2 * n)] * height
         return values

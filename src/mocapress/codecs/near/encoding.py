@@ -21,6 +21,8 @@ _SCALE_OF_MEAN = 2.5
 """Where the search for a mean begins; 5.5 at coarse ones."""
 _TRIES = 7
 _NEAR_ENOUGH = 0.01
+_MOST_COARSER = 0.3
+"""Logarithm of by how much a scale may grow where bounds have made errors smaller."""
 _INNER, _NEXT, _OUTER = 1.05, 1.15, 1.5
 """Means of joints may be so many times that of all; of those without further joints the last, of
 those that such a joint follows the one before."""
@@ -44,6 +46,10 @@ _STARTS = (1.6e-4, 2.2e-3)
 """Of the figure's size: scales from which the next of the learned starts is taken."""
 _RATE, _COARSE_RATE = 0.12, 0.2
 """What a bit is worth, in squares of the scale; the latter from the third start on."""
+
+
+def _size(chunk: Chunk) -> int:
+    return len(chunk.payload)
 
 
 class _Try(NamedTuple):
@@ -119,7 +125,7 @@ class Encoder:
         if not frames or not channels:
             return Encoded(self._header(1.0, (0.0, 0.0)), self._empty())
         scale = self._scale() if self.budget == inf else self._scale_of_budget()
-        payloads, errors = self._chunks(scale, self.most)
+        scale, payloads, errors = self._bounded(scale)
         largest = errors.max(axis=0, initial=0.0)
         for most, found in zip(self.most, largest, strict=True):
             if found > most:
@@ -130,6 +136,22 @@ class Encoder:
                 )
         header = self._header(scale, (float(errors.mean()), float(largest.max())))
         return Encoded(header, tuple(payloads))
+
+    def _bounded(self, scale: float) -> tuple[float, list[Chunk], NDArray[np.float64]]:
+        """Code within the bounds; give the scale, the chunks and their errors.
+
+        Bounds may make the mean smaller than was asked for. Then a coarser scale may do.
+        """
+        chunks, errors = self._chunks(scale, self.most)
+        off = self._off(errors)
+        if self.budget < inf or not -inf < off < -_NEAR_ENOUGH:
+            return scale, chunks, errors
+        coarser = scale * float(np.exp(min(-off, _MOST_COARSER)))
+        others, theirs = self._chunks(coarser, self.most)
+        smaller = sum(map(_size, others)) < sum(map(_size, chunks))
+        if smaller and self._off(theirs) <= _NEAR_ENOUGH:
+            return coarser, others, theirs
+        return scale, chunks, errors
 
     def _empty(self) -> tuple[Chunk, ...]:
         """Chunks of frames without channels."""
@@ -189,6 +211,11 @@ class Encoder:
         excess: NDArray[np.float64] = means / (self.shares * max(means.mean(), 1e-300))
         return excess
 
+    def _off(self, errors: NDArray[np.float64]) -> float:
+        """Give the logarithm of the mean error beside the goal."""
+        mean = float((errors if self.goal.is_mean_asked else errors / self.parts).mean())
+        return log(mean / self.goal.mean) if mean > 0 else -inf
+
     def _steps(self, scale: float) -> list[int]:
         base = round(log2(scale) * STEPS_PER_OCTAVE)
         if self.known:
@@ -197,10 +224,9 @@ class Encoder:
         high = _MOST_STEP - (_MOST_STEP - base) % COARSE
         return [int(each) for each in np.clip(base + self.exponents, low, high)]
 
-    def _knot(self, scale: float) -> tuple[int, int]:
-        """Give the step of knots, in eighths, and what a coefficient of 1 stands for, in 64ths."""
-        relative = scale / self.goal.size
-        return 6 if relative < 2e-4 else 4, 64 if relative < 4e-4 else 61
+    def _knot(self, scale: float) -> int:
+        """Give the step of knots, in eighths."""
+        return 6 if scale / self.goal.size < 2e-4 else 4
 
     def _start(self, scale: float) -> int:
         """Give the learned start that is nearest, from 1 on; 0 where the scale says nothing."""
@@ -208,20 +234,17 @@ class Encoder:
             return 0
         return 1 + sum(scale / self.goal.size >= each for each in _STARTS)
 
-    def _rate(self, scale: float) -> float:
-        coarse = self.starts and scale / self.goal.size >= _STARTS[1]
-        return _COARSE_RATE if coarse else _RATE
+    def _is_coarse(self, scale: float) -> bool:
+        return self.starts and scale / self.goal.size >= _STARTS[1]
 
     def _header(self, scale: float, errors: tuple[float, float]) -> bytes:
-        knot, one = self._knot(scale)
         steps = self._steps(scale)
         early = scale / self.goal.size < (_STARTS[0] if self.known else _COARSE)
         return pack_header(
             self.goal.in_space,
             early,
             errors,
-            knot,
-            one,
+            self._knot(scale),
             steps,
             self.joints,
             self.turnings,
@@ -239,7 +262,8 @@ class Encoder:
             self.values[first : first + self.chunk],
             self._header(scale, (0.0, 0.0)),
             scale,
-            self._rate(scale) if self.rate is None else self.rate,
+            self.rate or (_COARSE_RATE if self._is_coarse(scale) else _RATE),
+            self._is_coarse(scale),
             self.weights,
             most,
             self.value_most,
@@ -267,7 +291,7 @@ class Encoder:
         for _ in range(_MOST_TRIES):
             chunks, _ = self._chunks(scale, unbounded)
             header = len(self._header(scale, (scale, scale)))
-            size = header + sum(len(chunk.payload) for chunk in chunks)
+            size = header + sum(map(_size, chunks))
             if size <= self.budget and (best is None or size > best[0]):
                 best = size, scale
             if _FULL_ENOUGH * self.budget <= size <= self.budget:
@@ -292,11 +316,10 @@ class Encoder:
         unbounded = np.full(self.measure.points, inf)
         for _ in range(_TRIES):
             errors = self._chunks(scale, unbounded)[1]
-            relative = errors / self.parts
-            mean = float((errors if self.goal.is_mean_asked else relative).mean())
-            if mean <= 0:
+            off = self._off(errors)
+            if off == -inf:
                 return scale
-            off, excess = log(mean / self.goal.mean), self._excess(relative)
+            excess = self._excess(errors / self.parts)
             tried.append(_Try(off, float(excess.max()), scale, self.weights))
             if tried[-1].lack <= 0:
                 break

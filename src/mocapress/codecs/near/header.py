@@ -49,7 +49,6 @@ def pack_header(
     early: bool,
     errors: tuple[float, float],
     knot: int,
-    first: int,
     steps: Sequence[int],
     joints: Joints,
     turnings: Sequence[Turning] = (),
@@ -67,8 +66,8 @@ def pack_header(
         Whether the first spans are short.
     errors
         Mean and largest; they are rounded up to three digits.
-    knot, first
-        The step of knots in eighths, and what a coefficient of 1 stands for in 64ths.
+    knot
+        The step of knots in eighths.
     steps
         Of each channel, as an exponent of 2^(1/64); they differ by multiples of 32.
     joints
@@ -89,7 +88,6 @@ def pack_header(
         (1 if in_space else 0) + (0 if early else 2) + (4 if radians else 0) + (8 if known else 0)
     )
     writer.integer(knot - 1)
-    writer.integer(first - 1)
     base = steps[0] if steps else 0
     writer.signed(base - _core.near_figure()[0][0] if known else base)
     writer.integer(start)
