@@ -41,7 +41,7 @@ _OTHERS = (5, 4, 3, 2, 1)
 _SHORT = 128
 """Up to so many frames all lower levels are tried."""
 _COSTLY, _NEAR = 7, 1.015
-"""From this level on the two below are tried only where others come so near."""
+"""From this level on the next one below is tried only where others come so near."""
 _SURE = 0.997
 """How much smaller a lower level must be where there are more frames than are tried."""
 _TELLING = 2
@@ -211,7 +211,7 @@ def _smallest(roles: Roles, level: int, values: NDArray[np.float64]) -> tuple[Ro
     """Give how a clip is coded in the fewest bytes, as far as its first frames tell.
 
     More predictors are not better ones for every clip, least of all for short ones. Tried are the
-    level, the fast ones, and the two below; of short clips all.
+    level, the fast ones, and the next one below; of short clips all.
     """
     rows = values[:_TRIED]
 
@@ -226,10 +226,12 @@ def _smallest(roles: Roles, level: int, values: NDArray[np.float64]) -> tuple[Ro
     lower = range(level - 1, 0, -1) if len(values) <= _SHORT else _OTHERS
     tried = [level, *(other for other in lower if other < level)]
     sizes = dict(zip(tried, each(size, tried), strict=True))
-    below = [other for other in (level - 1, level - 2) if other > 0 and other not in sizes]
-    others = min((sizes[other] for other in tried[1:]), default=0)
-    if level < _COSTLY or others < _NEAR * sizes[level]:
-        sizes |= dict(zip(below, each(size, below), strict=True))
+    # Where the skeleton is not known, the two strongest code alike.
+    below = level - 2 if level == STRONGEST_LEVEL and roles.skeleton == NONE else level - 1
+    if below > 0 and below not in sizes:
+        others = min(sizes[other] for other in tried[1:])
+        if level < _COSTLY or others < _NEAR * sizes[level]:
+            sizes[below] = size(below)
     best = min(sizes, key=lambda own: (sizes[own], -own))
     return at(best), best
 
