@@ -7,6 +7,7 @@ import pytest
 
 import mocapress as mp
 from mocapress.api import Opened
+from mocapress.codecs import Codec
 from mocapress.models import Place
 from mocapress.source import Source
 from mocapress.storage import ExistsError
@@ -180,3 +181,17 @@ def test_a_model_works_from_its_file(model: mp.Model, walk: bytes, tmp_path: Pat
     mp.save_model(model, tmp_path / "walks.mcm")
     blob = mp.compress(walk, CODEC, model=tmp_path / "walks.mcm")
     assert blob == mp.compress(walk, CODEC, model=model)
+
+
+def test_a_model_is_learned_and_used_at_one_level(samples: Path) -> None:
+    """Where no level is named, it is the strongest for learning, and the model's for coding."""
+    clip = samples / "freebvh.bvh"
+
+    def level(model: mp.Model, codec: str) -> Codec:
+        return Opened(Source(mp.compress(clip, codec, model=model)), models=[model]).codec()
+
+    strongest, middle = mp.train([clip]), mp.train([clip], "exact:level=6,chunk=100")
+    assert level(strongest, "exact") == mp.codec("exact:level=9")
+    assert level(middle, "exact:chunk=100") == mp.codec("exact:level=6,chunk=100")
+    assert level(middle, "exact:level=7") == mp.codec("exact:level=7")
+    assert middle != mp.train([clip], "exact:level=7,chunk=100")

@@ -50,6 +50,8 @@ struct Clip {
 Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* learned = nullptr,
              std::vector<float>* seen = nullptr);
 
+inline constexpr int kUsualLevel = 5;  // that of files which name none, as in Python and the page
+
 inline constexpr std::size_t kTogether = 1024;  // columns of a part, at most
 
 // The inverse. Throws std::invalid_argument when `payload` is not what `encode` makes.

@@ -219,7 +219,9 @@ std::vector<float> read_floats(Record& record) {
 Header read_header(ByteView header, std::size_t columns) {
   Record record(header);
   const std::uint64_t flags = record.integer(kModel + kOwnCouplings + kLower + kSkeleton);
-  const std::uint64_t level = (flags & kLower) != 0 ? record.integer(kMostLevel) : 0;
+  // In tens, the level that was asked for.
+  const std::uint64_t levels = (flags & kLower) != 0 ? record.integer(10 * kMostLevel + 9) : 0;
+  const std::uint64_t level = levels % 10;
   if ((flags & kLower) != 0 && level == 0) fail("a level that there is not");
   const bool skeleton = (flags & kSkeleton) != 0, own = (flags & kOwnCouplings) != 0;
   if (skeleton ? columns != kSkeletonChannels : own) fail("channels of another skeleton");
@@ -287,6 +289,7 @@ Header read_header(ByteView header, std::size_t columns) {
 Start read_start(ByteView model, const Header& header) {
   Record record(model);
   Start start;
+  if (record.integer(kMostLevel) == 0) fail("a level that there is not");  // at which it learned
   start.shared = read_floats(record);
   std::map<std::uint64_t, std::vector<float>> learned;
   const std::uint64_t count = record.integer(record.left() / 2);

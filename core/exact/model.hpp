@@ -38,7 +38,7 @@ inline constexpr double kFarthest = 20;         // in scales: an error beyond co
 inline constexpr double kRounding = 0.15;       // in steps: what rounding adds to the scale
 inline constexpr std::uint32_t kNoCut = 65512;  // its chance, in 1/65536
 // The first levels that have them.
-inline constexpr int kNetworkFrom = 7, kMemoriesFrom = 9;
+inline constexpr int kNetworkFrom = 7, kMemoriesFrom = 8, kMemoriesOfKnownFrom = 9;
 
 class Model {
  public:
@@ -75,7 +75,8 @@ class Model {
     }
     last_ = std::make_unique<LastStage>(count_, slots());
     if (clip.level >= kNetworkFrom) network_.emplace(count_);
-    gather_blends(clip.level >= kMemoriesFrom ? Blends::kMostMemories : 1);
+    const int memories_from = kinematics_ ? kMemoriesOfKnownFrom : kMemoriesFrom;
+    gather_blends(clip.level >= memories_from ? Blends::kMostMemories : 1);
     // Longer chains come first, so that those that learn together are of one length.
     for (auto& expert : experts_) learners_.push_back(&expert);
     std::ranges::stable_sort(learners_, std::greater(),

@@ -23,14 +23,15 @@ Variable one(Variable::Kind kind, std::size_t channel) {
   return {kind, {static_cast<std::uint16_t>(channel)}, 1, 0};
 }
 
-// Every channel by those before it in its block, and by the block's last frame.
-void add_blocks(Plans& plans, std::size_t channels, double fading) {
+// Every channel by those before it in its block; if `moves`, first differences, and those of the
+// block's last frame, too.
+void add_blocks(Plans& plans, std::size_t channels, bool moves, double fading) {
   const std::size_t blocks = (channels + kMostTogether - 1) / kMostTogether;
   for (std::size_t block = 0; block < blocks; ++block) {
     const std::size_t from = channels * block / blocks;
     const std::size_t to = channels * (block + 1) / blocks;
-    ExpertPlan plan{kWholeSlot, 1, fading, {}};
-    for (std::size_t channel = from; channel < to; ++channel) {
+    ExpertPlan plan{kWholeSlot, moves ? 1 : 2, fading, {}};
+    for (std::size_t channel = from; moves && channel < to; ++channel) {
       plan.variables.push_back(past(channel, 1));
     }
     for (std::size_t channel = from; channel < to; ++channel) {
@@ -95,17 +96,17 @@ Plans plans(std::span<const Column> columns, std::span<const Coupling> couplings
   const std::size_t channels = columns.size();
   Plans made;
   if (channels == 0) return made;
-  if (knows_skeleton(columns, level)) {
+  const bool known = knows_skeleton(columns, level);
+  if (known) {
     add_guessed(made, columns, 0, 0.9);
     if (level >= 9) add_guessed(made, columns, 2, 0.98);
   } else {
-    made.add(LimbsPlan{kLimbSlot, 2, 0.92});
+    made.add(LimbsPlan{kLimbSlot, 2, level == 6 ? 0.92 : 0.9});
+    if (level >= 8) made.add(LimbsPlan{kGuessSlot, 2, 0.75});
   }
   made.order.push_back({Predictor::Kind::own});
-  if (level >= 9) {
-    made.add(LimbsPlan{kMoveSlot, 1, 0.94});
-    add_blocks(made, channels, 0.998);
-  }
+  if (level >= (known ? 9 : 7)) made.add(LimbsPlan{kMoveSlot, 1, known ? 0.94 : 0.97});
+  if (level >= (known ? 9 : 8)) add_blocks(made, channels, known, known ? 0.998 : 0.95);
   for (const auto& coupling : couplings) {
     if (coupling.kind == 0) made.add(coupled(coupling, 0.9998));
   }

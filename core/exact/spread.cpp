@@ -17,8 +17,9 @@ constexpr double kMiddleRate = 0.12;
 constexpr double kSlowRate = 0.03;
 constexpr double kStep = 0.003;
 constexpr double kFreedom = 4;
-constexpr double kFirstScale = 1000;  // in floors
-constexpr double kFarthest = 20;      // an error beyond so many scales counts as one of them
+constexpr double kFirstRate = 0.2;  // from channel to channel, in the first frame
+constexpr double kTiny = 1e-3;      // levels
+constexpr double kFarthest = 20;    // an error beyond so many scales counts as one of them
 constexpr double kMostFeature = 3;
 constexpr double kMostWeight = 4;
 // Found by training on many clips; any channel moves on from there.
@@ -129,7 +130,7 @@ void Spreads::look_back(std::size_t c, double floor) {
 double Spreads::scale(std::size_t c, double disagreement, double floor) {
   if (seen_ == 0) {
     floors_[c] = floor;
-    return scales_[c] = kFirstScale * floor;
+    return scales_[c] = std::max(natural_exp(first_), floor);
   }
   if (floor != floors_[c]) look_back(c, floor);
   const double apart = bounded(natural_log(disagreement + floor) - middles_[c], kMostFeature);
@@ -145,7 +146,10 @@ double Spreads::scale(std::size_t c, double disagreement, double floor) {
 
 void Spreads::see(std::size_t c, double error) {
   errors_[c] = error;
-  if (seen_ == 0) return;
+  if (seen_ == 0) {
+    first_ = follow(first_, natural_log(std::fabs(error) + kTiny), kFirstRate);
+    return;
+  }
   const double relative = error * inverses_[c];
   const double square = relative * relative;
   squares_[c] = square;

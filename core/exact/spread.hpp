@@ -57,6 +57,7 @@ class Spreads {
   Lanes errors_;
   Lanes squares_;        // of the errors, in scales
   Lanes last_;           // how far off the value was, against the scale
+  double first_ = -1;    // in the first frame: logarithm of the errors of the channels before
   double activity_ = 0;  // the same, a running mean over the channels one after the other
   int seen_ = 0;
 };

@@ -91,7 +91,7 @@ inline constexpr FirstChances kFirst = {
 };
 
 inline constexpr NetworkTable kNetwork = {
-#include "data/network_1.txt"
+#include "data/network_2.txt"
 };
 
 #pragma GCC diagnostic pop

@@ -35,7 +35,7 @@ void decode_exact(const Stream& stream, ByteView own, const Chunk& chunk, double
   const std::size_t columns = stream.columns.size();
   const auto header = exact::read_header(own, columns);
   if (header.has_model) fail("the clip was coded with a model");
-  const auto level = static_cast<int>(parameter(stream, "level", 5, 9));
+  const auto level = static_cast<int>(parameter(stream, "level", exact::kUsualLevel, 9));
   exact::decode(chunk.payload, values, chunk.frames, chunk.frames, columns, header, level,
                 exact::Start{});
 }

@@ -131,13 +131,17 @@ def make_experts(
             older = [(c, age) for age in (2, 1) for c in run]
             experts.append(make(1, 2, 0.98, run, older, guess=skeleton.guess))
     else:
-        experts = limbs(0, 2, 0.92)
+        experts = limbs(0, 2, 0.92 if level == 6 else 0.9)
+        experts += limbs(1, 2, 0.75) if level >= 8 else []
     experts += [make(2, 1, 0.97, [c], [(c, 3), (c, 2), (c, 1)]) for c in range(n)]
-    if level >= 9:
+    count = -(-n // 160)
+    wide = [range(n * b // count, n * (b + 1) // count) for b in range(count)]
+    if skeleton and level == 9:
         experts += limbs(3, 1, 0.94)
-        count = -(-n // 160)
-        wide = [range(n * b // count, n * (b + 1) // count) for b in range(count)]
         experts += [make(4, 1, 0.998, block, [(c, 1) for c in block]) for block in wide]
+    elif not skeleton and level >= 7:
+        experts += limbs(3, 1, 0.97)
+        experts += [make(4, 2, 0.95, block) for block in wide] if level >= 8 else []
     for sources, targets in polynomials:
         known = [(c, 0) for c in sources]
         experts.append(make(None, 1, 0.9998, targets, known, products(levels, sources)))
@@ -163,8 +167,8 @@ def products(levels: Levels, sources: list[int]) -> list[Variable]:
 class Blend:
     """Blend: one move out of the predictions."""
 
-    def __init__(self, count: int, level: int) -> None:
-        fadings = (0.94, 0.985, 0.998) if level == 9 else (0.94,)
+    def __init__(self, count: int, memories: int) -> None:
+        fadings = (0.94, 0.985, 0.998)[:memories]
         self.chains = [Chain(count, fading, 1.0) for fading in fadings if count > 1]
         self.v = [1.0 for _ in fadings]
 

@@ -63,7 +63,7 @@ class Header:
     def __init__(self, record: Record, count: int) -> None:
         flags = record.integer()
         self.skeleton, self.learned = flags >> 3, flags & 1
-        self.level = record.integer() if flags & 4 else 0
+        self.level = record.integer() % 10 if flags & 4 else 0
         """Where it is not that of the parameters."""
         if self.skeleton > 1:
             raise CorruptError("a skeleton that this version does not have")
@@ -156,6 +156,7 @@ def read_coupling(record: Record) -> Coupling:
 def read_model(payload: bytes) -> dict[int, list[float]]:
     """Model: give the list of each column; of column -1 the one by all columns."""
     record = Record(payload)
+    record.integer()  # the level
     lists = {-1: record.bytes()}
     for _ in range(record.integer()):
         column = record.integer()

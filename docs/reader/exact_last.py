@@ -57,7 +57,7 @@ class Network:
     """Network: what it knows of the channels of a part."""
 
     def __init__(self, channels: int) -> None:
-        numbers = iter(whole_numbers("network_1"))
+        numbers = iter(whole_numbers("network_2"))
 
         def rows(count: int, width: int) -> list[list[int]]:
             return [[next(numbers) for _ in range(width)] for _ in range(count)]

@@ -77,9 +77,9 @@ class Spread:
         self.features = [0.0] * 6
         self.means, self.last, self.count = [0.0] * 3, 0.0, 0
 
-    def next(self, doubt: float, floor: float, activity: float) -> float:
+    def next(self, doubt: float, floor: float, activity: float, first: float) -> float:
         """Give the spread."""
-        self.value = 1000 * floor
+        self.value = max(exp(first), floor)
         if self.count > 0:
             fast, middle, slow = self.means
             s = m = ln(middle + floor)
@@ -110,13 +110,13 @@ class Channel:
     """A channel: what is kept of it from frame to frame."""
 
     def __init__(
-        self, column: Column, told: Told | None, count: int, level: int, chances: list[int]
+        self, column: Column, told: Told | None, count: int, memories: int, chances: list[int]
     ) -> None:
-        """Take how many experts predict it, and the chances of its buckets."""
+        """Take how many experts predict it, chains of its blend, and chances of its buckets."""
         self.column, self.told, self.chances = column, told, chances
         self.joint = told.coupling.joint if told else None
         self.law = None if self.joint else told
-        self.blend, self.spread = Blend(count + (3 if told else 0), level), Spread()
+        self.blend, self.spread = Blend(count + (3 if told else 0), memories), Spread()
         self.stage = LastStage() if not told else None
         self.low = {0: 0.0, 1: -180.0, 2: 0.0}[column.turns]
         self.edges = [Bit() for _ in range(32)]
@@ -168,6 +168,7 @@ class Part:
         predicted = [column for column in columns if not column.noise]
         places = [column.place for column in predicted]
         self.levels, self.activity = Levels([column.unit for column in predicted]), 0.0
+        self.first_error = -1.0
         self.skeleton = Skeleton(places, self.levels) if known and level > 7 else None
         told = make_told(couplings, self.levels)
         polynomials = [(one.sources, one.targets) for one in couplings if one.kind == 0]
@@ -176,9 +177,10 @@ class Part:
             [one for one in self.experts if c in one.targets] for c in range(len(predicted))
         ]
         self.channels = []
+        memories = 3 if level >= (9 if self.skeleton else 8) else 1
         for c, column in enumerate(predicted):
             chances = list(self.coding.slow)
-            channel = Channel(column, told.get(c), len(self.experts_of[c]), level, chances)
+            channel = Channel(column, told.get(c), len(self.experts_of[c]), memories, chances)
             channel.begin(lists.get(column.place, []))
             self.channels.append(channel)
         self.shared, self.products = Shared(), dict[int, list[float]]()
@@ -224,7 +226,7 @@ class Part:
         loose = channel.joint.loose if channel.joint else 1.0
         doubt = loose * step if channel.joint else total(abs(x - p) for x in moves) * share
         floor = (0.1 * step + 1e-9) / loose
-        scale = loose * channel.spread.next(doubt / loose, floor, self.activity)
+        scale = loose * channel.spread.next(doubt / loose, floor, self.activity, self.first_error)
         u, m, n = scale + step, p, 0.0
         if stage := channel.stage:
             experts = zip(self.experts_of[c], moves, strict=True)
@@ -248,6 +250,9 @@ class Part:
             self.products[c] = stage.learn(e - p, self.shared.weights)
         if self.network:
             self.network.see(c, e - p, u)
+        if channel.spread.count == 0:
+            size = ln(abs((e - m) / loose) + 1e-3)
+            self.first_error += 0.2 * (size - self.first_error)
         self.activity = channel.spread.learn((e - m) / loose, self.activity)
         return x
 

@@ -11,7 +11,7 @@ from numcodecs.abc import Codec
 from numcodecs.compat import ndarray_copy
 
 from mocapress.api import compress_clip, load
-from mocapress.codecs.exact import Exact
+from mocapress.codecs.exact import USUAL_LEVEL, Exact
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column
 
@@ -31,7 +31,7 @@ class ExactArrays(Codec):  # type: ignore[misc, unused-ignore]
 
     codec_id = "mocapress_exact"
 
-    def __init__(self, level: int = 5) -> None:
+    def __init__(self, level: int = USUAL_LEVEL) -> None:
         Exact(level=level)  # raises where there is no such level
         self.level = level
 

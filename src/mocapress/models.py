@@ -38,7 +38,8 @@ def train(sources: Iterable[Named | Clip], codec: str | Codec = DEFAULT_CODEC) -
     sources
         Clips, or motion files: paths, contents or streams; read one at a time.
     codec
-        A codec that learns, or its text.
+        A codec that learns, or its text; where this names no level, the strongest is taken.
+        Levels 1 to 5 of ``exact`` learn nothing.
 
     Raises
     ------
@@ -50,7 +51,7 @@ def train(sources: Iterable[Named | Clip], codec: str | Codec = DEFAULT_CODEC) -
         When the codec fails.
 
     """
-    made = codecs.codec(codec) if isinstance(codec, str) else codec
+    made = codecs.codec_for(codec, None) if isinstance(codec, str) else codec
     learner = codecs.learner(made)
     clips = (source if isinstance(source, Clip) else read(Source(source)) for source in sources)
     first = next(clips, None)

@@ -143,6 +143,17 @@ def test_errors_are_one_line_and_an_exit_code(
     assert done.stdout == b""
 
 
+def test_a_model_says_at_which_level_clips_are_coded(tmp_path: Path, samples: Path) -> None:
+    clip, model, packed = samples / "freebvh.bvh", tmp_path / "a.mcm", tmp_path / "a.mcz"
+    learned = mocapress("train", clip, "-o", model)
+    assert (learned.exit_code, learned.stderr) == (0, "")
+    assert mocapress("compress", clip, "--model", model, "-o", packed).exit_code == 0
+    assert "exact:level=9" in mocapress("info", packed).stdout
+    weak = mocapress("train", clip, "-o", tmp_path / "b.mcm", "--codec", "exact:level=3")
+    assert weak.exit_code == 0
+    assert "exact:level=3 learns nothing" in weak.stderr
+
+
 @pytest.mark.usefixtures("learner")
 def test_models_are_learned_and_used(tmp_path: Path, samples: Path, walk: Path) -> None:
     model, clips = tmp_path / "models/walks.mcm", tmp_path / "clips"

@@ -1,6 +1,7 @@
 """The fast levels of ``exact``: every number on every line comes back, and cheaply."""
 
 import lzma
+import re
 import sys
 from itertools import pairwise
 from pathlib import Path
@@ -13,8 +14,10 @@ from numpy.typing import NDArray
 
 import mocapress as mp
 from mocapress import _core, codecs
-from mocapress.errors import CorruptError
+from mocapress.api import Opened
+from mocapress.codecs.exact import Exact
 from mocapress.motion import Clip
+from mocapress.source import Source
 
 sys.path.append(str(Path(__file__).parents[2] / "docs/reader"))
 import exact_fast
@@ -104,6 +107,35 @@ def test_a_level_is_not_larger_than_the_one_below(samples: Path) -> None:
     data = (samples / "mocapbank.bvh").read_bytes()
     sizes = [len(mp.compress(data, f"exact:level={level}")) for level in range(1, 10)]
     assert all(size <= 1.002 * min(sizes[: i + 1]) for i, size in enumerate(sizes))
+
+
+def test_no_level_costs_more_than_those_below_but_for_a_byte() -> None:
+    """That byte is what the level is called."""
+    values = np.random.default_rng(1).normal(size=(40, 3)).round(4)
+    clip = mp.from_array(values, ("a", "b", "c"), fps=120)
+    sizes = [len(mp.compress(clip, f"exact:level={level}")) for level in range(1, 10)]
+    assert all(size <= min(sizes[: i + 1]) + 1 for i, size in enumerate(sizes))
+
+
+def test_a_file_says_which_level_was_asked_for() -> None:
+    values = np.random.default_rng(1).normal(size=(40, 3)).round(4)
+    clip = mp.from_array(values, ("a", "b", "c"), fps=120)
+    for level in (1, 5, 6, 9):
+        blob = mp.compress(clip, f"exact:level={level},chunk=30")
+        assert Opened(Source(blob)).codec() == mp.codec(f"exact:level={level},chunk=30")
+
+
+def test_the_usual_level_is_the_same_everywhere() -> None:
+    """Python, the compiled core and the page each have it once."""
+    root = Path(__file__).parents[2]
+    told = {
+        "core/exact/codec.hpp": r"kUsualLevel = (\d);",
+        "viewer/mcz/decoding.js": r"USUAL_LEVEL = (\d);",
+        "docs/format/exact.md": r"`level` \((\d)\)",
+    }
+    for path, pattern in told.items():
+        assert re.findall(pattern, (root / path).read_text(encoding="utf-8")) == ["5"], path
+    assert Exact().level == 5
 
 
 @pytest.mark.parametrize("level", LEVELS)
@@ -211,13 +243,14 @@ def test_payloads_of_a_wrong_length_are_found_out(level: int, noise: int) -> Non
 
 
 def test_levels_are_not_mixed_up(samples: Path) -> None:
+    """The header says at which level a clip is coded, whatever the parameters say."""
     clip = mp.read(samples / "freebvh.bvh")
-    encoded = codecs.codec("exact:level=1").encode(clip.main)
-    for level in (2, 3):
-        with pytest.raises(CorruptError):
-            codecs.codec(f"exact:level={level}").decode(
-                encoded.header, encoded.chunks, clip.columns
-            )
+    for coded in (1, 6):
+        encoded = codecs.codec(f"exact:level={coded}").encode(clip.main)
+        for level in (1, 3, 9):
+            codec = codecs.codec(f"exact:level={level}")
+            back = codec.decode(encoded.header, encoded.chunks, clip.columns)
+            assert back.tobytes() == clip.values.tobytes()
 
 
 @pytest.mark.parametrize("level", LEVELS)

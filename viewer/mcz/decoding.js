@@ -15,10 +15,14 @@ const ALPHAS = {
   ],
 };
 
+// Of `exact`, as in core/exact/codec.hpp.
+const USUAL_LEVEL = 5;
+
 // Of each codec: what its module is told (core/wasm), and the most frames that a chunk has.
 const CODECS = {
   exact(own) {
-    return { told: [whole(own, "level", 5, 9)], most: whole(own, "chunk", 512, MOST_CHUNK) };
+    const told = [whole(own, "level", USUAL_LEVEL, 9)];
+    return { told, most: whole(own, "chunk", 512, MOST_CHUNK) };
   },
   app(own) {
     const alphas = Object.hasOwn(ALPHAS, own.table) ? ALPHAS[own.table] : undefined;

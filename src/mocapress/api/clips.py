@@ -89,10 +89,9 @@ def _checked(clip: Clip, codec: Codec, model: Model | None, blob: bytes) -> Comp
 
 def checked_codec(codec: str | Codec, model: Model | None) -> Codec:
     """Make a codec of its text; see that the model is for it."""
-    made = codecs.codec(codec) if isinstance(codec, str) else codec
-    if model is not None:
-        codecs.learner(made, model)
-    return made
+    if isinstance(codec, str):
+        return codecs.codec_for(codec, model) if model else codecs.codec(codec)
+    return codecs.learner(codec, model) if model else codec
 
 
 def readable(name: str) -> str:

@@ -65,7 +65,7 @@ def compress(
         Whether to store the skeleton of an AMC, too, and its file.
     model
         What the codec learned from other clips (``train``), or its file. Decompressing needs it
-        again.
+        again. Where ``codec`` is a text that names no level, the model's is taken.
     notes
         What to say about the file in it, such as ``source`` and ``license``.
 

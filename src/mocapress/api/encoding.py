@@ -28,7 +28,7 @@ def coded(
 ) -> tuple[StreamHead, list[CodedChunk]]:
     """Give what a file holds of the first stream of a clip: its stream ``index``, ``name``."""
     head = replace(
-        stream_head(name, clip.main, codec, frames=clip.frames),
+        stream_head(name, clip.main, codec.as_stored(), frames=clip.frames),
         model=model.digest if model and encoded.uses_model else b"",
         header=encoded.header,
     )

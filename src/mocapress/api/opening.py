@@ -92,9 +92,10 @@ class Opened:
     def codec(self, stream: int = 0) -> Codec:
         """Give the codec of a stream."""
         if stream not in self._codecs:
-            spec = self.streams[stream].codec
+            spec, header = self.streams[stream].codec, self.streams[stream].header
             try:
-                self._codecs[stream] = codecs.from_parameters(spec.id, spec.parameters)
+                stored = codecs.from_parameters(spec.id, spec.parameters)
+                self._codecs[stream] = stored.as_told(header)
             except ParameterError as error:
                 raise CorruptError(f"stream {self.streams[stream].name!r}: {error}") from error
         return self._codecs[stream]

@@ -68,7 +68,11 @@ def compress(
     ] = None,
     model: Annotated[
         Path | None,
-        typer.Option("--model", help="Model made by mocapress train; also needed to decompress."),
+        typer.Option(
+            "--model",
+            help="Model made by mocapress train; also needed to decompress. Without --level, its "
+            "level is taken.",
+        ),
     ] = None,
     to: Annotated[
         Packed | None,
@@ -247,21 +251,20 @@ def _codec(
     from mocapress import codecs
     from mocapress.cli.batch import usage
     from mocapress.codecs import Bound
-    from mocapress.errors import ParameterError
+    from mocapress.errors import CorruptError, ParameterError
 
     try:
-        made = codecs.codec(text or (codecs.DEFAULT_CODEC if to is Packed.MCZ else "diffma"))
+        named = text or (codecs.DEFAULT_CODEC if to is Packed.MCZ else "diffma")
+        made = codecs.codec_for(named, learned) if learned else codecs.codec(named)
         if level is not None:
             made = codecs.with_level(made, level)
-        if learned is not None:
-            codecs.learner(made, learned)
         if target_psnr is not None:
             if Bound.MEAN not in made.can.bounds:
                 raise ParameterError("--target-psnr is for a lossy codec", expected="diffma")
             made = replace(made, target_psnr=target_psnr)  # type: ignore[type-var]
         if to is not Packed.MCZ and not made.can.document:
             raise ParameterError(f"{made.id} makes no {to}", expected="diffma")
-    except ParameterError as error:
+    except (ParameterError, CorruptError) as error:
         usage(f"--codec: {error}")
     return made
 

@@ -21,7 +21,11 @@ def train(
     ],
     codec: Annotated[
         str | None,
-        typer.Option("--codec", help="Codec that learns; by default that of compress."),
+        typer.Option(
+            "--codec",
+            help="Codec that learns, e.g. exact:level=6; by default exact. Without a level, the "
+            "strongest, 9; at levels 1 to 5 exact learns nothing.",
+        ),
     ] = None,
     force: Force = False,
     json: Json = False,
@@ -37,8 +41,7 @@ def train(
     from mocapress.source import Source
 
     try:
-        made = codecs.codec(codec or codecs.DEFAULT_CODEC)
-        codecs.learner(made)
+        made = codecs.codec_for(codec or codecs.DEFAULT_CODEC, None)
     except ParameterError as error:
         usage(f"--codec: {error}")
     clips_named = [job.source for job in find(inputs, (*suffixes(readable()), ".mcz"))]
@@ -48,6 +51,8 @@ def train(
     refuse_other_kinds(output, (".mcm",), known_endings())
     model_job = Job(target, target.parent, target=target, force=force)
     refuse_sources([model_job], clips_named)
+    if not made.learns:
+        say(f"warning: {codecs.spec(made)} learns nothing: only levels 6 to 9 do")
     learned = {"clips": 0, "frames": 0}
 
     def clips() -> "Iterator[Clip]":

@@ -141,6 +141,26 @@ def codec(text: str) -> Codec:
     return made
 
 
+def codec_for(text: str, model: Model | None) -> Codec:
+    """Make a codec of its text that is to learn a model, or to code with the one given.
+
+    Where the text names no level, this is the model's; to learn, the strongest.
+
+    Raises
+    ------
+    ParameterError
+        As ``codec``; or when it does not learn, or the model is another codec's.
+    UnsupportedError
+        When the codec is another package's, which cannot be imported.
+    CorruptError
+        When the model is no sound one.
+
+    """
+    made = learner(codec(text), model)
+    named = {item.partition("=")[0] for item in text.partition(":")[2].split(",")}
+    return made if "level" in named else made.for_model(model)
+
+
 def spec(made: Codec) -> str:
     """Give the text that makes this codec again: only what differs from the defaults."""
     fields: Any = dataclasses.fields(made)  # type: ignore[arg-type]

@@ -159,6 +159,30 @@ class Codec(ABC):
     """The parameter, a text, that takes what is given as ``name=value`` with names that no other
     parameter has; none for a codec that refuses them."""
 
+    def as_stored(self) -> "Codec":
+        """Give the codec whose parameters a file names, where the codec header says the rest."""
+        return self
+
+    def as_told(self, header: bytes) -> "Codec":
+        """Give the codec that ``as_stored`` was made of, from its header."""
+        return self
+
+    def for_model(self, model: "Model | None") -> "Codec":
+        """Give the codec as it suits a model, or as it best learns one, where nobody says how.
+
+        Raises
+        ------
+        CorruptError
+            When the model's payload does not follow the codec's format.
+
+        """
+        return self
+
+    @property
+    def learns(self) -> bool:
+        """Whether it learns with these parameters (capability ``trains``)."""
+        return self.can.trains
+
     @property
     def lossless(self) -> bool:
         """Whether the bits of all values come back."""

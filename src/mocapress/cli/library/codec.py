@@ -10,14 +10,12 @@ def chosen_codec(text: str, level: int | None, model: "Model | None" = None) -> 
     """Make a codec; end with the exit code of wrong usage where there is none such."""
     from mocapress import codecs
     from mocapress.cli.batch import usage
-    from mocapress.errors import ParameterError
+    from mocapress.errors import CorruptError, ParameterError
 
     try:
-        made = codecs.codec(text)
+        made = codecs.codec_for(text, model) if model else codecs.codec(text)
         if level is not None:
             made = codecs.with_level(made, level)
-        if model is not None:
-            codecs.learner(made, model)
-    except ParameterError as error:
+    except (ParameterError, CorruptError) as error:
         usage(f"--codec: {error}")
     return made

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,23 +21,27 @@ from mocapress.codecs.contract import (
 )
 from mocapress.codecs.exact.columns import Told
 from mocapress.codecs.exact.coupling_search import find_couplings
-from mocapress.codecs.exact.header import pack_header
+from mocapress.codecs.exact.header import USUAL_LEVEL, asked_level, pack_header
 from mocapress.codecs.exact.roles import Roles, find_roles
 from mocapress.codecs.exact.skeletons import NONE, OWN_COUPLINGS, assumed, skeleton_of
-from mocapress.codecs.exact.start import Learned, Start, model_of, start_of
+from mocapress.codecs.exact.start import Learned, Start, level_of, model_of, start_of
 from mocapress.codecs.threads import each
 from mocapress.errors import CorruptError, ParameterError
 from mocapress.motion import Column, Skeleton, Stream
 
+STRONGEST_LEVEL: Final = 9
+_LEVELS_WITHOUT_MODELS = 5
 _MOST_FRAMES = 1 << 20
 _FAST_LEVELS = 2
 """Up to this level couplings are not looked for: they have no use for them."""
 _TRIED = 256
 """Frames on which lower levels are tried, too."""
-_OTHERS = (5, 2, 1)
+_OTHERS = (5, 4, 3, 2, 1)
 """Lower levels that are always tried."""
+_SHORT = 128
+"""Up to so many frames all lower levels are tried."""
 _COSTLY, _NEAR = 7, 1.015
-"""From this level on the one below is tried only where others come so near."""
+"""From this level on the next one below is tried only where others come so near."""
 _SURE = 0.997
 """How much smaller a lower level must be where there are more frames than are tried."""
 _TELLING = 2
@@ -51,7 +55,7 @@ class Exact(Codec):
     id: ClassVar[str] = "exact"
     can: ClassVar[Capabilities] = Capabilities(lossless=True, levels=True, trains=True)
 
-    level: int = 5
+    level: int = USUAL_LEVEL
     """1, the fastest, to 9, the strongest."""
     chunk: int = 512
     """Frames that are decoded together; every chunk learns anew."""
@@ -61,6 +65,24 @@ class Exact(Codec):
             value = getattr(self, name)
             if not isinstance(value, int) or not 1 <= value <= most:
                 raise ParameterError(f"exact:{name}", expected=f"1 to {most}", found=repr(value))
+
+    def as_stored(self) -> "Exact":
+        """Give the codec at the usual level: the header names another, in a byte."""
+        return replace(self, level=USUAL_LEVEL)
+
+    def as_told(self, header: bytes) -> "Exact":
+        """Give the codec at the level that was asked for, if the header names one."""
+        level = asked_level(header)
+        return replace(self, level=level) if level else self
+
+    def for_model(self, model: Model | None) -> "Exact":
+        """Give the codec at the model's level; to learn one, at the strongest."""
+        return replace(self, level=level_of(model) if model else STRONGEST_LEVEL)
+
+    @property
+    def learns(self) -> bool:
+        """Whether models are of use at the level."""
+        return self.level > _LEVELS_WITHOUT_MODELS
 
     def train(self, streams: Iterable[Stream]) -> Model:
         """Learn what to begin with: each stream is coded as if it went on from the last.
@@ -75,7 +97,7 @@ class Exact(Codec):
             coder = _Coder(_roles(numbers, stream.columns, self.level), self.level, start)
             _, learned = coder.encode(numbers, learn=True)
             start.take(coder.columns, learned)
-        return model_of(self.id, start)
+        return model_of(self.id, self.level, start)
 
     def encode(
         self,
@@ -107,8 +129,9 @@ class Exact(Codec):
             return Chunk(first, len(rows), told.pack(coder.encode(rows)[0], own))
 
         chunks = each(coded, range(0, stream.frames, self.chunk))
-        other = level if level != self.level else None
-        header = pack_header(roles, told, has_model=model is not None, level=other)
+        header = pack_header(
+            roles, told, has_model=model is not None, level=level, asked=self.level
+        )
         return Encoded(header, tuple(chunks))
 
     def decode(
@@ -188,7 +211,7 @@ def _smallest(roles: Roles, level: int, values: NDArray[np.float64]) -> tuple[Ro
     """Give how a clip is coded in the fewest bytes, as far as its first frames tell.
 
     More predictors are not better ones for every clip, least of all for short ones. Tried are the
-    level, those that differ most, and the one below.
+    level, the fast ones, and the next one below; of short clips all.
     """
     rows = values[:_TRIED]
 
@@ -196,13 +219,15 @@ def _smallest(roles: Roles, level: int, values: NDArray[np.float64]) -> tuple[Ro
         return replace(roles, couplings=()) if own <= _FAST_LEVELS else roles
 
     def size(own: int) -> float:
-        header = pack_header(at(own), Told(), has_model=False, level=None if own == level else own)
+        header = pack_header(at(own), Told(), has_model=False, level=own, asked=level)
         found = len(header) + len(_Coder(at(own), own, Start()).encode(rows)[0])
         return found / _SURE if own < level and len(rows) < len(values) else found
 
-    tried = [level, *(other for other in _OTHERS if other < level)]
+    lower = range(level - 1, 0, -1) if len(values) <= _SHORT else _OTHERS
+    tried = [level, *(other for other in lower if other < level)]
     sizes = dict(zip(tried, each(size, tried), strict=True))
-    below = level - 1
+    # Where the skeleton is not known, the two strongest code alike.
+    below = level - 2 if level == STRONGEST_LEVEL and roles.skeleton == NONE else level - 1
     if below > 0 and below not in sizes:
         others = min(sizes[other] for other in tried[1:])
         if level < _COSTLY or others < _NEAR * sizes[level]:

@@ -5,29 +5,36 @@ docs/format/exact.md describes it; core/exact/header.cpp reads it.
 
 import struct
 from collections.abc import Sequence
+from typing import Final
 
 from mocapress.codecs.exact.columns import Told
 from mocapress.codecs.exact.coupling import write_couplings
 from mocapress.codecs.exact.roles import EXPONENT_STEP, Role, Roles
 from mocapress.codecs.exact.skeletons import NONE, OWN_COUPLINGS
 from mocapress.codecs.palette import indexed, write_indices, write_palette
-from mocapress.records import Writer
+from mocapress.errors import CorruptError
+from mocapress.records import Reader, Writer
 
 _MODEL, _OWN_COUPLINGS, _LEVEL, _SKELETON = 1, 2, 4, 8
 _LINE_DIGITS = 32
+USUAL_LEVEL: Final = 5
+"""Which a header need not name; as in core/exact/codec.hpp and viewer/mcz/decoding.js."""
 
 
-def pack_header(roles: Roles, told: Told, *, has_model: bool, level: int | None = None) -> bytes:
+def pack_header(
+    roles: Roles, told: Told, *, has_model: bool, level: int = USUAL_LEVEL, asked: int = USUAL_LEVEL
+) -> bytes:
     """Make the header of a clip with these roles, coded with a model or without.
 
-    ``level`` where it is not that of the codec's parameters.
+    ``asked`` is the level that was asked for.
     """
     own = roles.skeleton != NONE and set(roles.couplings) <= set(OWN_COUPLINGS)
     writer = Writer()
     flags = _MODEL * has_model + _OWN_COUPLINGS * own + _SKELETON * roles.skeleton
-    writer.integer(flags + _LEVEL * (level is not None))
-    if level is not None:
-        writer.integer(level)
+    names_level = (asked, level) != (USUAL_LEVEL, USUAL_LEVEL)
+    writer.integer(flags + _LEVEL * names_level)
+    if names_level:
+        writer.integer(10 * asked + level)
     codes = zip(roles.roles, roles.turns, strict=True)
     write_palette(writer, [role + len(Role) * turns for role, turns in codes])
     lines = [roles.lines[c] for c in _moving(roles.roles)]
@@ -43,6 +50,15 @@ def pack_header(roles: Roles, told: Told, *, has_model: bool, level: int | None 
         write_couplings(writer, roles.couplings)
     told.write(writer)
     return bytes(writer.data)
+
+
+def asked_level(header: bytes) -> int:
+    """Give the level that was asked for, if a header names one; otherwise 0."""
+    reader = Reader(header, "exact header")
+    try:
+        return reader.integer(99) // 10 if reader.integer() & _LEVEL else 0
+    except CorruptError:
+        return 0  # which reading the header tells of
 
 
 def _moving(roles: Sequence[Role]) -> list[int]:

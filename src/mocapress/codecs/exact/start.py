@@ -35,9 +35,10 @@ class Start:
         self.columns.update(zip(coded, learned[1], strict=True))
 
 
-def model_of(codec: str, start: Start) -> Model:
-    """Give the model of a start, its numbers rounded to eleven binary digits."""
+def model_of(codec: str, level: int, start: Start) -> Model:
+    """Give the model of what a level learned, its numbers rounded to eleven binary digits."""
     writer = Writer()
+    writer.integer(level)
     _write(writer, start.shared)
     writer.integer(len(start.columns))
     for column, numbers in sorted(start.columns.items()):
@@ -58,10 +59,30 @@ def start_of(model: Model | None) -> Start:
     if model is None:
         return Start()
     reader = Reader(model.payload, "exact model")
+    _level(reader)
     shared = _read(reader)
     columns = {reader.integer(): _read(reader) for _ in range(reader.integer(_MOST_COLUMNS))}
     reader.end()
     return Start(shared, columns)
+
+
+def level_of(model: Model) -> int:
+    """Give the level at which a model was learned.
+
+    Raises
+    ------
+    CorruptError
+        When the model's payload is not what ``model_of`` makes.
+
+    """
+    return _level(Reader(model.payload, "exact model"))
+
+
+def _level(reader: Reader) -> int:
+    level = reader.integer(9)
+    if level == 0:
+        raise reader.fail("a level that there is not")
+    return level
 
 
 def _write(writer: Writer, numbers: Sequence[float]) -> None:
