@@ -14,6 +14,8 @@ from mocapress.motion.units import ANGLES, LENGTHS, Amount
 MEAN_OF_PRECISION = 1 / 3
 MEAN_OF_MOST = 0.3
 """What mean error goes with a largest one, where none is asked for."""
+MEAN_OF_FINE_MOST, FINE = 0.35, 3e-3
+"""The same where the largest is less than this part of a figure's size: corrections cost less."""
 MOST_OF_PRECISION = 1.6
 """ACL's own largest error at a precision, at most times this."""
 
@@ -83,8 +85,8 @@ def goal_of(
 
     if not asked:
         # From 1 cm at 1 to 0.01 cm at 9, of a figure 1.7 m high; without one, degrees.
-        fine = 10.0 ** ((1 - quality) / 4)
-        precision = Amount(fine / HEIGHT * size if figure else fine, "")
+        centimetres = 10.0 ** ((1 - quality) / 4)
+        precision = Amount(centimetres / HEIGHT * size if figure else centimetres, "")
     largest = own(most) if most else own(precision) * MOST_OF_PRECISION if precision else inf
     of_joints = _of_joints(figure, {part: own(each) for part, each in parts.items()})
     if mean:
@@ -92,7 +94,8 @@ def goal_of(
     elif precision:
         middle = own(precision) * MEAN_OF_PRECISION
     else:
-        middle = largest * MEAN_OF_MOST
+        fine = figure is not None and largest < FINE * size
+        middle = largest * (MEAN_OF_FINE_MOST if fine else MEAN_OF_MOST)
     return Goal(figure is not None, middle, largest, radius, size, of_joints, mean is not None)
 
 
