@@ -42,7 +42,6 @@ struct SinesCosines {
 // sine_cosine of each.
 template <class Vector>
 MOCAPRESS_IN_PLACE SinesCosines<Vector> sines_cosines(Vector angles) {
-  constexpr double kHalfPi = 1.5707963267948966, kHalfPiRest = 6.123233995736766e-17;
   angles = ((angles <= 1e6) & (angles >= -1e6)) ? angles : Vector{};
   const Vector turns = angles * (1 / kHalfPi);
   const Vector half = Vector{} + 0.5;
@@ -51,23 +50,7 @@ MOCAPRESS_IN_PLACE SinesCosines<Vector> sines_cosines(Vector angles) {
   const Vector whole = __builtin_convertvector(near, Vector);
   const auto quarter = __builtin_convertvector(near, typename Whole<Vector>::Wide);
   const Vector x = (angles - whole * kHalfPi) - whole * kHalfPiRest;
-  const Vector q = x * x;
-  const Vector sine =
-      x *
-      (1.0 -
-       q * (1.0 / 6) *
-           (1.0 - q * (1.0 / 20) *
-                      (1.0 - q * (1.0 / 42) *
-                                 (1.0 - q * (1.0 / 72) *
-                                            (1.0 - q * (1.0 / 110) * (1.0 - q * (1.0 / 156)))))));
-  const Vector cosine =
-      1.0 - q * (1.0 / 2) *
-                (1.0 - q * (1.0 / 12) *
-                           (1.0 - q * (1.0 / 30) *
-                                      (1.0 - q * (1.0 / 56) *
-                                                 (1.0 - q * (1.0 / 90) *
-                                                            (1.0 - q * (1.0 / 132) *
-                                                                       (1.0 - q * (1.0 / 182)))))));
+  const Vector sine = sine_series(x), cosine = cosine_series(x);
   const auto odd = (quarter & 1) != 0;
   const Vector one = odd ? cosine : sine, other = odd ? sine : cosine;
   return {(quarter & 2) != 0 ? -one : one, ((quarter + 1) & 2) != 0 ? -other : other};
@@ -83,15 +66,6 @@ MOCAPRESS_IN_PLACE Vector magnitudes(Vector numbers) {
 template <class Vector>
 MOCAPRESS_IN_PLACE Vector arc_tangents(Vector y, Vector x) {
   constexpr double kPi = 3.141592653589793;
-  constexpr double kEighths[16] = {0,
-                                   0.12435499454676144,
-                                   0.24497866312686414,
-                                   0.3587706702705722,
-                                   0.4636476090008061,
-                                   0.5585993153435624,
-                                   0.6435011087932844,
-                                   0.7188299996216245,
-                                   0.7853981633974483};
   const Vector up = magnitudes(y), along = magnitudes(x);
   const auto steep = up > along;
   const Vector low = steep ? along : up, high = steep ? up : along;
@@ -100,14 +74,9 @@ MOCAPRESS_IN_PLACE Vector arc_tangents(Vector y, Vector x) {
   const auto eighth = __builtin_convertvector(ratio * 8.0 + 0.5, typename Whole<Vector>::Half);
   const Vector near = __builtin_convertvector(eighth, Vector) / 8.0;
   const Vector t = (ratio - near) / (1.0 + ratio * near);
-  const Vector q = t * t;
-  const Vector rest =
-      t *
-      (1.0 - q * (1.0 / 3 -
-                  q * (1.0 / 5 - q * (1.0 / 7 - q * (1.0 / 9 - q * (1.0 / 11 - q * (1.0 / 13)))))));
   Vector angle;
-  for (std::size_t i = 0; i < kWidth<Vector>; ++i) angle[i] = kEighths[eighth[i] & 15];
-  angle += rest;
+  for (std::size_t i = 0; i < kWidth<Vector>; ++i) angle[i] = kEighthAngles[eighth[i] & 15];
+  angle += arc_series(t);
   angle = steep ? kPi / 2 - angle : angle;
   angle = x < 0.0 ? kPi - angle : angle;
   angle = y < 0.0 ? -angle : angle;

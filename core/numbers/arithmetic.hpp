@@ -38,6 +38,52 @@ inline double natural_exp(double value) {
   return std::bit_cast<double>(static_cast<std::int64_t>(bits));
 }
 
+inline constexpr double kHalfPi = 1.5707963267948966, kHalfPiRest = 6.123233995736766e-17;
+// atan(k / 8); 16, so that four bits are always an index.
+inline constexpr double kEighthAngles[16] = {0,
+                                             0.12435499454676144,
+                                             0.24497866312686414,
+                                             0.3587706702705722,
+                                             0.4636476090008061,
+                                             0.5585993153435624,
+                                             0.6435011087932844,
+                                             0.7188299996216245,
+                                             0.7853981633974483};
+
+// Series, of doubles and of vectors of them: sine and cosine within an eighth of a turn, and the
+// angle of a tangent of at most 1/16.
+template <class Number>
+MOCAPRESS_IN_PLACE Number sine_series(Number x) {
+  const Number q = x * x;
+  return x * (1.0 - q * (1.0 / 6) *
+                        (1.0 - q * (1.0 / 20) *
+                                   (1.0 - q * (1.0 / 42) *
+                                              (1.0 - q * (1.0 / 72) *
+                                                         (1.0 - q * (1.0 / 110) *
+                                                                    (1.0 - q * (1.0 / 156)))))));
+}
+
+template <class Number>
+MOCAPRESS_IN_PLACE Number cosine_series(Number x) {
+  const Number q = x * x;
+  return 1.0 -
+         q * (1.0 / 2) *
+             (1.0 - q * (1.0 / 12) *
+                        (1.0 - q * (1.0 / 30) *
+                                   (1.0 - q * (1.0 / 56) *
+                                              (1.0 - q * (1.0 / 90) *
+                                                         (1.0 - q * (1.0 / 132) *
+                                                                    (1.0 - q * (1.0 / 182)))))));
+}
+
+template <class Number>
+MOCAPRESS_IN_PLACE Number arc_series(Number t) {
+  const Number q = t * t;
+  return t * (1.0 - q * (1.0 / 3 -
+                         q * (1.0 / 5 -
+                              q * (1.0 / 7 - q * (1.0 / 9 - q * (1.0 / 11 - q * (1.0 / 13)))))));
+}
+
 struct SineCosine {
   double sine, cosine;
 };
@@ -45,26 +91,11 @@ struct SineCosine {
 // Of an angle in radians; of 0 where it is beyond 1e6 or no number.
 inline SineCosine sine_cosine(double angle) {
   if (!(std::fabs(angle) <= 1e6)) angle = 0;
-  constexpr double kHalfPi = 1.5707963267948966;
-  constexpr double kHalfPiRest = 6.123233995736766e-17;
   const double turns = angle * (1 / kHalfPi);
   const auto quarter = static_cast<std::int64_t>(turns + (turns < 0 ? -0.5 : 0.5));
   const auto whole = static_cast<double>(quarter);
   const double x = (angle - whole * kHalfPi) - whole * kHalfPiRest;  // |x| <= pi / 4
-  const double q = x * x;
-  const double sine =
-      x * (1 - q * (1.0 / 6) *
-                   (1 - q * (1.0 / 20) *
-                            (1 - q * (1.0 / 42) *
-                                     (1 - q * (1.0 / 72) *
-                                              (1 - q * (1.0 / 110) * (1 - q * (1.0 / 156)))))));
-  const double cosine =
-      1 - q * (1.0 / 2) *
-              (1 - q * (1.0 / 12) *
-                       (1 - q * (1.0 / 30) *
-                                (1 - q * (1.0 / 56) *
-                                         (1 - q * (1.0 / 90) *
-                                                  (1 - q * (1.0 / 132) * (1 - q * (1.0 / 182)))))));
+  const double sine = sine_series(x), cosine = cosine_series(x);
   switch (quarter & 3) {
     case 0:
       return {sine, cosine};
@@ -80,16 +111,6 @@ inline SineCosine sine_cosine(double angle) {
 // The angle of (x, y), in radians; 0 of (0, 0).
 inline double arc_tangent(double y, double x) {
   constexpr double kPi = 3.141592653589793;
-  // atan(k / 8)
-  constexpr double kEighths[] = {0,
-                                 0.12435499454676144,
-                                 0.24497866312686414,
-                                 0.3587706702705722,
-                                 0.4636476090008061,
-                                 0.5585993153435624,
-                                 0.6435011087932844,
-                                 0.7188299996216245,
-                                 0.7853981633974483};
   const double up = std::fabs(y);
   const double along = std::fabs(x);
   const bool steep = up > along;
@@ -100,12 +121,7 @@ inline double arc_tangent(double y, double x) {
   const auto eighth = static_cast<int>(ratio * 8 + 0.5);
   const double near = eighth / 8.0;
   const double t = (ratio - near) / (1 + ratio * near);  // |t| <= 1 / 16
-  const double q = t * t;
-  const double rest =
-      t *
-      (1 - q * (1.0 / 3 -
-                q * (1.0 / 5 - q * (1.0 / 7 - q * (1.0 / 9 - q * (1.0 / 11 - q * (1.0 / 13)))))));
-  double angle = kEighths[eighth] + rest;
+  double angle = kEighthAngles[eighth] + arc_series(t);
   if (steep) angle = kPi / 2 - angle;
   if (x < 0) angle = kPi - angle;
   return y < 0 ? -angle : angle;
