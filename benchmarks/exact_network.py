@@ -9,10 +9,9 @@ distribution of a number around its prediction: a mixture of three logistic dist
 scaled by the network. Prints the bits per number (where the number line is fine) of the subjects
 that are left out, without the network and with it. A quarter of an hour on a free core.
 
-The weights that the format has were learned by these functions from the same rows, with torch 2.13
-on x86-64. With layers of 128 in place of 64, subjects left out would become 0.1 % smaller, for four
-times the work; more inputs (accelerations, what each chain of the blend says, residuals of later
-channels) would bring 0.02 %.
+The weights of the format come from torch 2.13 on x86-64. With layers of 128 in place of 64,
+subjects left out would become 0.1 % smaller, for four times the work; more inputs (accelerations,
+what each chain of the blend says, residuals of later channels) would bring 0.02 %.
 """
 
 import argparse

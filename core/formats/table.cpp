@@ -20,6 +20,9 @@ bool is_missing(std::string_view text) {
   std::string word = lower(text);
   if (word.ends_with("(ind)")) word.resize(word.size() - 5);
   if (word.size() > 1 && (word[0] == '-' || word[0] == '+')) word.erase(0, 1);
+  for (const std::string_view start : {"1.#qnan", "1.#ind"}) {
+    if (word.starts_with(start)) return word.find_first_not_of('0', start.size()) == word.npos;
+  }
   return word == "nan" || word == "na" || word == "n/a" || word == "#n/a" || word == "null" ||
          word == "none" || word == "-";
 }

@@ -16,8 +16,8 @@ namespace mocapress {
 
 // How lines are cut into cells. A line of another width is no row.
 struct TableCut {
-  // Between all cells, or of each two; an empty one stands before the blanks that a cell begins
-  // with.
+  // One for all gaps between cells, or one for each gap. An empty one means that cells are aligned
+  // by the blanks that they begin with.
   std::vector<std::string> delimiters;
   std::string line_break;
   std::size_t width = 1;

@@ -110,8 +110,8 @@ MOCAPRESS_IN_PLACE void products_with(const double* waves, const Use* use, const
   constexpr std::size_t kStep = 2 * kWidth<Vector>, kVectors = 4 / kWidth<Vector>;
   while (use != end) {
     const auto tile = tile_of(*use);
-    const std::size_t row = 2 * kTileRows * tile.first;
-    const double* rows = waves + row / kFill * kFill * kWaves + row % kFill;
+    const std::size_t top = 2 * kTileRows * tile.first;
+    const double* rows = waves + top / kFill * kFill * kWaves + top % kFill;
     const double* columns = waves + kFill * kWaves * tile.second;
     double products[kWaveBands][2 * kTileRows][kFill];
     std::size_t first = 0;

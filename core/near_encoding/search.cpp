@@ -297,7 +297,7 @@ MOCAPRESS_IN_PLACE Cut block_with(Coder& coder, const Plan& plan, const Target& 
     if (i == 3 && std::abs(near) < 2) break;
     Cut cut = block_of<Vector>(coder, plan, target, around, costs, care, start, length, last, knot);
     const double cost = cut.cost + cost_of(knot, 1 + kNextBlock * length);
-    if (cost >= least) continue;
+    if (i > 0 && cost >= least) continue;  // where no cost is finite, the first
     least = cost;
     cut.cost += cost_of(knot, 1);
     best = std::move(cut);

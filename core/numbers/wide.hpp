@@ -12,8 +12,8 @@
 #define MOCAPRESS_MAY_BE_WIDE 0
 #endif
 
-// Compiles all that a function calls in place. Where kernels are only checked, which takes the
-// compiler minutes, it does nothing.
+// Compiles all that a function calls in place. It does nothing in builds for fuzzing and checking,
+// where it would cost the compiler minutes.
 #if defined(FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION) || defined(MOCAPRESS_NO_CLONES)
 #define MOCAPRESS_FLATTEN
 #else

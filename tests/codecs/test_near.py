@@ -218,6 +218,13 @@ def test_what_it_costs_falls_with_the_error(samples: Path) -> None:
     assert len(mp.compress(clip, "exact")) > 2 * sizes[0]
 
 
+@pytest.mark.parametrize("most", ["1e160", "1e300"])
+def test_absurd_bounds_are_kept(most: str) -> None:
+    values = np.cumsum(np.random.default_rng(3).normal(size=(300, 4)), axis=0)
+    blob = mp.compress(mp.Clip.from_array(values, list("abcd")), f"near:max={most}")
+    assert np.isfinite(mp.load(blob).values).all()
+
+
 def test_info_tells_the_errors(samples: Path, tmp_path: Path) -> None:
     clip = mp.read(samples / "cmu_01_01.amc")[:100]
     codec = mp.codec("near:max=0.1cm")

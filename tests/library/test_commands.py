@@ -251,7 +251,7 @@ def test_a_reader_that_has_seen_enough_is_no_fault(filled: Path) -> None:
         running.stdout.close()
         assert running.stderr.read() == b""
         running.stderr.close()
-        running.wait()
+        assert running.wait() in (0, 1)
 
 
 def test_a_library_may_go_without_an_index(tmp_path: Path, samples: Path) -> None:

@@ -52,7 +52,7 @@ def train(
     model_job = Job(target, target.parent, target=target, force=force)
     refuse_sources([model_job], clips_named)
     if not made.learns:
-        say(f"warning: {codecs.spec(made)} learns nothing: only levels 6 to 9 do")
+        say(f"warning: {codecs.spec(made)} learns nothing from other clips")
     learned = {"clips": 0, "frames": 0}
 
     def clips() -> "Iterator[Clip]":

@@ -75,13 +75,14 @@ class _Way(NamedTuple):
         if self.decimal_comma:
             inner = exchanged(inner)
         if len(self.delimiters) > 1:
-            cells = []
+            cells, at = [], 0
             for delimiter in self.delimiters:
-                cell, found, inner = inner.partition(delimiter)
-                if not found:
+                end = inner.find(delimiter, at)
+                if end < 0:
                     return None
-                cells.append(cell)
-            cells.append(inner)
+                cells.append(inner[at:end])
+                at = end + len(delimiter)
+            cells.append(inner[at:])
         elif self.delimiters[0]:
             cells = inner.split(self.delimiters[0])
         else:
@@ -153,7 +154,7 @@ def _way(lines: list[bytes]) -> _Way | None:
     def score(way: _Way) -> int:
         return sum(map(way.numbers, sample))
 
-    best = max((way for way in _ways(sample)), key=score, default=None)
+    best = max(_ways(sample), key=score, default=None)
     if best is None or not score(best):
         return None
     mixed = _mixed(sample, best)

@@ -221,7 +221,7 @@ def read_layout(data: bytes, kind: str) -> TableLayout:
     delimiters: tuple[bytes, ...] = (delimiter,)
     if options & _MIXED:
         delimiters = tuple(bytes([sign]) for sign in reader.bytes())
-        if len(delimiters) + 1 != len(kinds):
+        if len(kinds) < 3 or len(delimiters) + 1 != len(kinds):
             raise reader.fail("another number of delimiters")
     encoding = next((name for name, bit in _ENCODINGS.items() if bit == options & _ENCODED), None)
     if encoding is None:

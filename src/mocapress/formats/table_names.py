@@ -66,7 +66,9 @@ def unnamed(place: int) -> str:
 def header_lines(layout: TableLayout) -> list[list[str]]:
     """Give the cells of the header's lines, without quotes."""
     lines = re.split(rb"\r\n|\n|\r", layout.header)[:-1]
-    sign = text_of(layout.delimiters[0].strip(b'" '))
+    # Where there are several, commas stand within cells.
+    outer = next((sign for sign in layout.delimiters if sign != b","), b",")
+    sign = text_of(outer.strip(b'" '))
     return [_cells(text_of(line), sign) for line in lines]
 
 
@@ -174,7 +176,7 @@ def _grouped(layout: TableLayout, lines: Sequence[Sequence[str]]) -> list[str] |
         return None
     outer = [0]
     for sign in signs:
-        outer.append(outer[-1] + (sign == signs[0]))
+        outer.append(outer[-1] + (sign != b","))
     cells = next((cells for cells in reversed(lines) if len(cells) == outer[-1] + 1), None)
     if cells is None:
         return None
@@ -190,7 +192,7 @@ def _of_markers(lines: Sequence[Sequence[str]], width: int) -> list[str] | None:
     """Give x, y and z of the markers that Qualisys lists in one line."""
     for cells in lines:
         count = sum(map(bool, cells[1:]))
-        if cells[0] == _MARKERS and 3 * count == width:
+        if cells[:1] == [_MARKERS] and 3 * count == width:
             return [f"{label}.{axis}" for label in cells[1 : count + 1] for axis in "xyz"]
     return None
 

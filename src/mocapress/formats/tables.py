@@ -40,9 +40,10 @@ CSV = "csv"
 """Id of the format."""
 TABLE = "table"
 """Name of the stream that holds the columns of numbers."""
+_LINE_BREAK = re.compile(rb"\r\n|\n|\r")
 _ROWS_AT_LEAST = 3
 _NUMBERS_AT_LEAST = 1000
-"""In fewer rows, where rows are long."""
+"""So many also tell a table, where rows are too long for three of them to be in the head."""
 _LONGEST_LINE = 2**12
 """Bytes of a line behind the rows that are looked at."""
 _MOST_NAMED = 2**12
@@ -96,7 +97,7 @@ def _clip(layout: TableLayout, values: Values, name: str | None) -> Clip:
 def problems_of(layout: TableLayout) -> list[Problem]:
     """Name rows that are left out, cells that are no numbers, and what stands behind the rows."""
     found = []
-    first = layout.header.count(b"\n") + 1
+    first = len(_LINE_BREAK.findall(layout.header)) + 1
     lines = list(islice(layout.verbatim.items(steps=False), _MOST_NAMED))
     broken = [(place, line) for place, line in lines if line.strip()]
     if broken:
@@ -118,7 +119,7 @@ def problems_of(layout: TableLayout) -> list[Problem]:
         what = "a cell that is no number" + _and_more(len(odd))
         found.append(Problem.of(UNREADABLE_ROWS, what, at, None, "a number", repr(text_of(cell))))
     if layout.tail.strip(b' \t\r\n"'):
-        rows = sum(map(_is_row, layout.tail.split(b"\n")[:_MOST_NAMED]))
+        rows = sum(map(_is_row, _LINE_BREAK.split(layout.tail)[:_MOST_NAMED]))
         if rows > 1:
             at = first + layout.rows + len(lines)
             what = "rows of another table behind the last row, which are left out"
@@ -129,9 +130,10 @@ def problems_of(layout: TableLayout) -> list[Problem]:
 
 
 def _is_row(line: bytes) -> bool:
-    """Tell whether a line has several numbers, however it is cut."""
-    cells = re.split(rb"[\t,;]", line[:_LONGEST_LINE])
-    return sum(1 for cell in cells if NUMBER.match(cell.strip())) > 1
+    """Tell whether a line is mostly numbers, several of them, however it is cut."""
+    cells = re.split(rb"[\t,;| ]+", line[:_LONGEST_LINE])
+    numbers = sum(1 for cell in cells if NUMBER.match(cell.strip(b'"\r')))
+    return numbers > 1 and 2 * numbers >= len(cells)
 
 
 def _cells_of(line: bytes, delimiter: bytes) -> int:

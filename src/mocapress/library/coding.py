@@ -1,5 +1,6 @@
 """Coding what is to be added: as a ``.mcz``, and as runs of what the library has."""
 
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -109,9 +110,10 @@ class Coder:
         opened = Opened(source, self.models)
         mcz = opened.mcz
         data = contents(opened, mcz.original) if mcz.original else b""
+        newest = sys.maxsize  # where nothing is looked for, nothing can come too late
         if mcz.head is None:
             of = recognise(data, mcz.original.name if mcz.original else "")
-            return Coded(mcz, of.id if of else "")
+            return Coded(mcz, of.id if of else "", newest=newest)
         values = [
             opened.rows(index).values if stream.columns else np.empty((opened.frames(index), 0))
             for index, stream in enumerate(opened.streams)
@@ -129,7 +131,7 @@ class Coder:
                 return Coded(rest, kind, first.shape, runs, None, None, (), newest, clip)
         models = [opened.model(index) for index in range(len(opened.streams))]
         kept = tuple(model for model in models if model is not None)
-        return Coded(mcz, kind, first.shape, (), hashes, None, kept, clip=clip)
+        return Coded(mcz, kind, first.shape, (), hashes, None, kept, newest, clip)
 
     def _all_there(
         self, digest: bytes, hashes: Hashes, values: Sequence[Values], without: int | None

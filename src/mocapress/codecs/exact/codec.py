@@ -40,8 +40,8 @@ _OTHERS = (5, 4, 3, 2, 1)
 """Lower levels that are always tried."""
 _SHORT = 128
 """Up to so many frames all lower levels are tried."""
-_COSTLY, _NEAR = 7, 1.015
-"""From this level on the next one below is tried only where others come so near."""
+_NEAR = 1.015
+"""Other levels below are tried only where these come so near."""
 _SURE = 0.997
 """How much smaller a lower level must be where there are more frames than are tried."""
 _TELLING = 2
@@ -228,10 +228,9 @@ def _smallest(roles: Roles, level: int, values: NDArray[np.float64]) -> tuple[Ro
     sizes = dict(zip(tried, each(size, tried), strict=True))
     # Where the skeleton is not known, the two strongest code alike.
     below = level - 2 if level == STRONGEST_LEVEL and roles.skeleton == NONE else level - 1
-    if below > 0 and below not in sizes:
-        others = min(sizes[other] for other in tried[1:])
-        if level < _COSTLY or others < _NEAR * sizes[level]:
-            sizes[below] = size(below)
+    others = min((sizes[other] for other in tried[1:]), default=0.0)
+    if below > _OTHERS[0] and below not in sizes and others < _NEAR * sizes[level]:
+        sizes[below] = size(below)
     best = min(sizes, key=lambda own: (sizes[own], -own))
     return at(best), best
 
