@@ -93,7 +93,8 @@ def make(lock: str, *targets: str) -> None:
     held.parent.mkdir(parents=True, exist_ok=True)
     with held.open("w") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
-        subprocess.run(["make", "-s", *targets], cwd=ROOT, check=True, capture_output=True)
+        command = ["make", "-s", f"-j{os.cpu_count()}", *targets]
+        subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
 
 
 def need_zig() -> None:

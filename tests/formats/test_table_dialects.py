@@ -202,6 +202,11 @@ def test_long_cells_and_headers_take_no_longer_than_two_seconds(piece: bytes) ->
     assert time.process_time() - begin < 2
 
 
+def test_comments_before_a_hierarchy_make_no_table(samples: Path) -> None:
+    data = b"# by hand\n\n// twice\n" + (samples / "freebvh.bvh").read_bytes()
+    assert mp.read(data).skeleton is not None
+
+
 @pytest.mark.parametrize("head", ["", "# a comment\n\n", "\n\n\n"])
 def test_a_header_of_empty_lines(head: str, tmp_path: Path) -> None:
     path = tmp_path / "a.csv"

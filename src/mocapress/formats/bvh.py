@@ -1,5 +1,6 @@
 """BVH: a skeleton and its motion in one file, one line per frame."""
 
+import re
 from decimal import Decimal
 from functools import partial
 
@@ -18,6 +19,8 @@ from mocapress.motion.convert import to_bvh_clip
 from mocapress.motion.frame_time import decimal_seconds
 from mocapress.motion.skeleton import Vec3
 
+# Comments may stand before it.
+_KEYWORD = re.compile(rb"(?:(?:#|//)[^\r\n]*+\s*+)*+HIERARCHY\b", re.IGNORECASE)
 _WORDS = {
     f"{kind}{axis}": f"{axis.upper()}{word}"
     for axis in "xyz"
@@ -112,7 +115,7 @@ FORMAT = Format(
     id="bvh",
     name="BVH",
     suffixes=(".bvh",),
-    recognises=lambda head: head[:9].upper() == b"HIERARCHY",
+    recognises=lambda head: bool(_KEYWORD.match(head)),
     split=split,
     fit=to_bvh_clip,
     write=write,
