@@ -185,8 +185,6 @@ check_windows := x86_64-w64-mingw32-g++-posix -O3 -static $(EXACT) $(ONE)
 # Not allowed; that it prints something else shows that the check sees it.
 check_contracted := $(CXX) -O2 -mavx2 -mfma $(EXACT) $(ONE) -ffp-contract=fast
 
-check_wasm := $(ZIG) -Os
-
 # Objects, build/check/WAY/core/..., serve all codecs of a way.
 .SECONDEXPANSION:
 $(wasm_modules): build/wasm/%.wasm: $$(addprefix build/wasm/,$$(addsuffix .o,$$(basename $$(wasm_sources))))
@@ -215,7 +213,7 @@ build/check/usual/%: core/check/%.cpp $(wildcard core/check/*) $(VENV)/.installe
 # Of the objects that modules are made of, run by Node.
 build/check/wasm/%: $$(addprefix build/wasm/,$$(addsuffix .o,$$(basename $$(check_sources))))
 	@mkdir -p $(@D)
-	$(check_wasm) $^ -o $@
+	$(ZIG) -Os $^ -o $@
 
 bench: $(VENV)/.built corpus
 	$(BIN)/mocapress bench lossless $(if $(wildcard corpus/.version),corpus/amc/cmu)

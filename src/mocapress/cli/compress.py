@@ -249,13 +249,14 @@ def _codec(
     from dataclasses import replace
 
     from mocapress import codecs
+    from mocapress.api.clips import checked_codec
     from mocapress.cli.batch import usage
     from mocapress.codecs import Bound
     from mocapress.errors import CorruptError, ParameterError
 
     try:
         named = text or (codecs.DEFAULT_CODEC if to is Packed.MCZ else "diffma")
-        made = codecs.codec_for(named, learned) if learned else codecs.codec(named)
+        made = checked_codec(named, learned)
         if level is not None:
             made = codecs.with_level(made, level)
         if target_psnr is not None:

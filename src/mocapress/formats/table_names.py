@@ -34,6 +34,7 @@ _RATE = re.compile(
     re.IGNORECASE,
 )
 _MARKERS = "MARKER_NAMES"
+LINE_BREAK = re.compile(rb"\r\n|\n|\r")
 _SIGNS = "\t;,|"
 _LONGEST_NAME = 60
 """Characters of a name in which a unit or a time is looked for."""
@@ -65,7 +66,7 @@ def unnamed(place: int) -> str:
 
 def header_lines(layout: TableLayout) -> list[list[str]]:
     """Give the cells of the header's lines, without quotes."""
-    lines = re.split(rb"\r\n|\n|\r", layout.header)[:-1]
+    lines = LINE_BREAK.split(layout.header)[:-1]
     # Where there are several, commas stand within cells.
     outer = next((sign for sign in layout.delimiters if sign != b","), b",")
     sign = text_of(outer.strip(b'" '))

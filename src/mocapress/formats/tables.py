@@ -29,7 +29,7 @@ from mocapress.formats.table_layout import (
     read_layout,
     series,
 )
-from mocapress.formats.table_names import header_of, text_of, time_of, unnamed
+from mocapress.formats.table_names import LINE_BREAK, header_of, text_of, time_of, unnamed
 from mocapress.formats.table_splitting import find_layout, numbers_of, split_table
 from mocapress.formats.table_writing import with_frames, write_csv
 from mocapress.motion import Clip, Column, Skeleton, Stream
@@ -40,7 +40,6 @@ CSV = "csv"
 """Id of the format."""
 TABLE = "table"
 """Name of the stream that holds the columns of numbers."""
-_LINE_BREAK = re.compile(rb"\r\n|\n|\r")
 _ROWS_AT_LEAST = 3
 _NUMBERS_AT_LEAST = 1000
 """So many also tell a table, where rows are too long for three of them to be in the head."""
@@ -97,7 +96,7 @@ def _clip(layout: TableLayout, values: Values, name: str | None) -> Clip:
 def problems_of(layout: TableLayout) -> list[Problem]:
     """Name rows that are left out, cells that are no numbers, and what stands behind the rows."""
     found = []
-    first = len(_LINE_BREAK.findall(layout.header)) + 1
+    first = len(LINE_BREAK.findall(layout.header)) + 1
     lines = list(islice(layout.verbatim.items(steps=False), _MOST_NAMED))
     broken = [(place, line) for place, line in lines if line.strip()]
     if broken:
@@ -119,7 +118,7 @@ def problems_of(layout: TableLayout) -> list[Problem]:
         what = "a cell that is no number" + _and_more(len(odd))
         found.append(Problem.of(UNREADABLE_ROWS, what, at, None, "a number", repr(text_of(cell))))
     if layout.tail.strip(b' \t\r\n"'):
-        rows = sum(map(_is_row, _LINE_BREAK.split(layout.tail)[:_MOST_NAMED]))
+        rows = sum(map(_is_row, LINE_BREAK.split(layout.tail)[:_MOST_NAMED]))
         if rows > 1:
             at = first + layout.rows + len(lines)
             what = "rows of another table behind the last row, which are left out"

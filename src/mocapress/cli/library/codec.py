@@ -9,11 +9,12 @@ if TYPE_CHECKING:
 def chosen_codec(text: str, level: int | None, model: "Model | None" = None) -> "Codec":
     """Make a codec; end with the exit code of wrong usage where there is none such."""
     from mocapress import codecs
+    from mocapress.api.clips import checked_codec
     from mocapress.cli.batch import usage
     from mocapress.errors import CorruptError, ParameterError
 
     try:
-        made = codecs.codec_for(text, model) if model else codecs.codec(text)
+        made = checked_codec(text, model)
         if level is not None:
             made = codecs.with_level(made, level)
     except (ParameterError, CorruptError) as error:
