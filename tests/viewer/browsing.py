@@ -110,8 +110,15 @@ class Visit:
         self.page.evaluate("document.activeElement.blur()")
         self.page.keyboard.press("ArrowLeft")  # a step pauses
         self.page.keyboard.press("Home")
-        for _ in range(frame):
-            self.page.keyboard.press("ArrowRight")
+        # Hundreds of keys one by one take the driver a minute.
+        self.page.evaluate(
+            """(count) => {
+                const step = { key: "ArrowRight", bubbles: true };
+                for (let i = 0; i < count; i++)
+                    document.body.dispatchEvent(new KeyboardEvent("keydown", step));
+            }""",
+            frame,
+        )
 
     def pixels(self) -> NDArray[np.float32]:
         """Give the canvas as it is on the screen: (H, W, 3), 0 to 1."""
