@@ -10,6 +10,7 @@ import pytest
 from table_files import markers, odd_table, trc
 
 import mocapress as mp
+from mocapress.formats import printed_floats
 from mocapress.formats.table_layout import NUMBERS, SERIES, TableLayout, read_layout
 from mocapress.source import Source
 
@@ -65,6 +66,27 @@ def test_float32_printed_as_decimals_are_coded_as_floats_and_read_as_printed(num
         assert np.array_equal(clip.values, np.array(expected), equal_nan=True)
     part = mp.load(blob, frames=slice(30, 33)).values  # so few that they could be anything
     assert np.array_equal(part, np.array(expected)[30:33], equal_nan=True)
+
+
+def test_each_column_is_judged_alone_whether_it_was_float32(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(printed_floats, "_TOGETHER", 100)  # two columns at a time
+    numbers = np.random.default_rng(2).normal(scale=300, size=(40, 6))
+    numbers[:, 2] = numbers[:, 2].round(2)
+    numbers[:, 3] = numbers[:, 3].round()
+    numbers[:, 4] *= 1e60
+    numbers[5, :2] = np.nan
+    printed = ["{:.9f}", "{:.9f}", "{:.2f}", "{:.9f}", "{:.9f}", "{:.17g}"]
+    numbers[:, :2] = numbers[:, :2].astype(np.float32)
+    rows = [[f.format(x) for f, x in zip(printed, row, strict=True)] for row in numbers.tolist()]
+    data = ("a,b,c,d,e,f\n" + "\n".join(map(",".join, rows)) + "\n").encode()
+    stored = Source(data, "a.csv").split().clip.values
+    assert np.array_equal(stored, numbers, equal_nan=True)
+    read = np.array(rows, np.float64)
+    assert not np.array_equal(read, numbers, equal_nan=True)
+    assert np.array_equal(mp.read(data).values, read, equal_nan=True)
+    layout_of(data)
 
 
 def test_counters_and_times_are_no_numbers_to_code() -> None:

@@ -1,7 +1,7 @@
 """Tables of numbers: CSV and TSV of any program, and OpenSim's MOT and STO."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import islice
@@ -16,7 +16,7 @@ from mocapress.formats.bids import channels_beside
 from mocapress.formats.contract import Format, LongSplit, Near, Split
 from mocapress.formats.encodings import FileText
 from mocapress.formats.layout import NO_ROWS
-from mocapress.formats.printed_floats import as_printed
+from mocapress.formats.printed_floats import as_printed, rounded_floats
 from mocapress.formats.problems import BYTES_AFTER_END, UNREADABLE_ROWS, Problem
 from mocapress.formats.table_cutting import MISSING, NUMBER
 from mocapress.formats.table_layout import (
@@ -156,11 +156,13 @@ def full_values(layout: TableLayout, values: Values) -> dict[int, Values]:
 
     """
     found = {}
-    stored = iter(np.ascontiguousarray(values.T))
+    stored = zip(np.ascontiguousarray(values.T), rounded_floats(values).tolist(), strict=True)
     for place, column in enumerate(layout.columns):
         if column.kind == NUMBERS:
-            numbers = next(stored)
-            found[place] = numbers if column.others.number else as_printed(numbers, column.format)
+            numbers, rounded = next(stored)
+            if rounded and not column.others.number:
+                numbers = as_printed(numbers, column.format)
+            found[place] = numbers
         elif column.kind == SAME:
             found[place] = np.full(len(values), _number(column.text))
         elif column.kind == SERIES and len(values) == layout.rows:
@@ -198,9 +200,10 @@ def described(layout: Any, clip: Clip, near: Near) -> Clip:
         for place, column in values.items()
         if not _is_text(layout.columns[place], named=names[place] != unnamed(place))
     }
-    named = named_columns([names[place] for place in kept])
+    own = distinct(names[place] for place in kept)
     columns = tuple(
-        replace(column, unit=units[place]) for place, column in zip(kept, named, strict=True)
+        Column(name, at, "v", units[place])
+        for at, (name, place) in enumerate(zip(own, kept, strict=True))
     )
     matrix = np.stack(list(kept.values()), axis=1)
     return replace(clip, streams={TABLE: Stream(matrix, columns, time)})
@@ -211,11 +214,6 @@ def stream_of(clip: Clip, name: str) -> Stream:
     if name not in clip.streams:
         raise CorruptError("streams", expected=repr(name), found=repr(", ".join(clip.streams)))
     return clip.streams[name]
-
-
-def named_columns(names: Sequence[str]) -> tuple[Column, ...]:
-    """Give columns of names; one that is there again is ``name#2``."""
-    return tuple(Column(name, place, "v") for place, name in enumerate(distinct(names)))
 
 
 def _recognised(head: bytes) -> bool:
