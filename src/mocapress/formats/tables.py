@@ -1,10 +1,8 @@
 """Tables of numbers: CSV and TSV of any program, and OpenSim's MOT and STO."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +15,7 @@ from mocapress.formats.contract import Format, LongSplit, Near, Split
 from mocapress.formats.encodings import FileText
 from mocapress.formats.layout import NO_ROWS
 from mocapress.formats.printed_floats import as_printed, rounded_floats
-from mocapress.formats.problems import BYTES_AFTER_END, UNREADABLE_ROWS, Problem
-from mocapress.formats.table_cutting import MISSING, NUMBER
+from mocapress.formats.table_cutting import MISSING
 from mocapress.formats.table_layout import (
     NUMBERS,
     SAME,
@@ -29,7 +26,8 @@ from mocapress.formats.table_layout import (
     read_layout,
     series,
 )
-from mocapress.formats.table_names import LINE_BREAK, header_of, text_of, time_of, unnamed
+from mocapress.formats.table_names import header_of, time_of, unnamed
+from mocapress.formats.table_problems import problems_of
 from mocapress.formats.table_splitting import find_layout, numbers_of, split_table
 from mocapress.formats.table_writing import with_frames, write_csv
 from mocapress.motion import Clip, Column, Skeleton, Stream
@@ -43,10 +41,6 @@ TABLE = "table"
 _ROWS_AT_LEAST = 3
 _NUMBERS_AT_LEAST = 1000
 """So many also tell a table, where rows are too long for three of them to be in the head."""
-_LONGEST_LINE = 2**12
-"""Bytes of a line behind the rows that are looked at."""
-_MOST_NAMED = 2**12
-"""Lines, and cells of a column, that are looked at to name those that are broken."""
 
 Values = NDArray[np.float64]
 
@@ -91,57 +85,6 @@ def _clip(layout: TableLayout, values: Values, name: str | None) -> Clip:
         raise FormatError("no column of numbers", file=name, expected="a table of numbers")
     stream = Stream(values, numbered_columns(values.shape[1], ("v",)), time_of(layout))
     return Clip({TABLE: stream}, None, Path(name).stem if name else "")
-
-
-def problems_of(layout: TableLayout) -> list[Problem]:
-    """Name rows that are left out, cells that are no numbers, and what stands behind the rows."""
-    found = []
-    first = len(LINE_BREAK.findall(layout.header)) + 1
-    lines = list(islice(layout.verbatim.items(steps=False), _MOST_NAMED))
-    broken = [(place, line) for place, line in lines if line.strip()]
-    if broken:
-        place, line = min(broken)
-        cells = _cells_of(line, layout.delimiters[0])
-        what = "a row of another length, which is left out" + _and_more(len(broken))
-        width = f"{len(layout.columns)} cells"
-        found.append(Problem.of(UNREADABLE_ROWS, what, first + place, None, width, str(cells)))
-    odd = [
-        (row, text)
-        for column in layout.columns
-        if column.kind == NUMBERS
-        for row, text in islice(column.others.items(steps=True), _MOST_NAMED)
-        if not (NUMBER.match(text.strip()) or MISSING.match(text.strip()))
-    ]
-    if odd:
-        row, cell = min(odd)
-        at = first + row + sum(place <= row for place, _ in lines)
-        what = "a cell that is no number" + _and_more(len(odd))
-        found.append(Problem.of(UNREADABLE_ROWS, what, at, None, "a number", repr(text_of(cell))))
-    if layout.tail.strip(b' \t\r\n"'):
-        rows = sum(map(_is_row, LINE_BREAK.split(layout.tail)[:_MOST_NAMED]))
-        if rows > 1:
-            at = first + layout.rows + len(lines)
-            what = "rows of another table behind the last row, which are left out"
-            found.append(Problem.of(UNREADABLE_ROWS, what, at))
-        else:
-            found.append(Problem.of(BYTES_AFTER_END, "something behind the last row"))
-    return found
-
-
-def _is_row(line: bytes) -> bool:
-    """Tell whether a line is mostly numbers, several of them, however it is cut."""
-    cells = re.split(rb"[\t,;| ]+", line[:_LONGEST_LINE])
-    numbers = sum(1 for cell in cells if NUMBER.match(cell.strip(b'"\r')))
-    return numbers > 1 and 2 * numbers >= len(cells)
-
-
-def _cells_of(line: bytes, delimiter: bytes) -> int:
-    return line.count(delimiter) + 1 if delimiter else len(line.split())
-
-
-def _and_more(count: int) -> str:
-    least = "at least " if count >= _MOST_NAMED else ""
-    return f" (and {least}{count - 1} more)" if count > 1 else ""
 
 
 def full_values(layout: TableLayout, values: Values) -> dict[int, Values]:
