@@ -40,6 +40,8 @@ class Bounds {
 
  private:
   struct Row;
+  struct Few;
+  void choose_few(const Row& row, const std::vector<std::size_t>& points, Mending& best) const;
   void choose(const Row& row, const std::vector<std::size_t>& candidates, Mending& best) const;
   bool is_enough(const Row& row, const Correction& one) const;
   Correction moved_back(const Row& row, const std::vector<std::size_t>& candidates,
