@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 #include "coding/sides.hpp"
 #include "near/codec.hpp"
@@ -11,6 +11,7 @@
 #include "near/marks.hpp"
 #include "near/prediction.hpp"
 #include "near/start.hpp"
+#include "near_encoding/bounds.hpp"
 #include "near_encoding/search.hpp"
 
 namespace mocapress::near {
@@ -31,9 +32,9 @@ class Encoding {
         measure_(curves),
         file_measure_(measure),
         whole_(values, values + frames * channels_),
-        raised_(frames * channels_, 1.0F),
         moves_(channels_),
-        steps_(task.plan.steps) {
+        steps_(task.plan.steps),
+        bounds_(measure_, steps_, task.most, task.value_most) {
     fill_gaps();
     wanted_ = turned(whole_, task.plan);
     for (std::size_t i = 0; i < wanted_.size(); ++i) {
@@ -51,25 +52,13 @@ class Encoding {
 
   Coded run() {
     Coded coded;
-    std::vector<Kept> kept;
-    // Costlier errors may cost more than corrections: the smallest payload stays.
-    for (int round = 0;; ++round) {
-      curves();
-      const std::vector<double> drawn = drawn_;
-      const auto corrections = correct();
-      turn_back(drawn_.data(), frames_, task_.plan, starts_);
-      auto own = keep();
-      Marks marks(side_, frames_, channels_);
-      marks.corrections(corrections, [](const Correction&) {});
-      marks.kept(own, [](std::size_t, std::size_t, double) {});
-      Bytes payload = side_.finish();
-      if (round == 0 || payload.size() < coded.payload.size()) {
-        coded.payload = std::move(payload);
-        kept = std::move(own);
-      }
-      drawn_ = drawn;
-      if (round == task_.rounds || !raise(round)) break;
-    }
+    curves();
+    turn_back(drawn_.data(), frames_, task_.plan, starts_);
+    const std::vector<Kept> kept = keep();
+    Marks marks(side_, frames_, channels_);
+    marks.corrections(corrections_, [](const Correction&) {});
+    marks.kept(kept, [](std::size_t, std::size_t, double) {});
+    coded.payload = side_.finish();
     coded.values.resize(frames_ * channels_);
     decode(coded.payload, coded.values.data(), frames_, task_.plan);
     const std::size_t points = file_measure_.points(channels_);
@@ -89,6 +78,16 @@ class Encoding {
   }
 
  private:
+  // A way to code a span, and what stands behind it.
+  struct Way {
+    double cost = kInfinite;
+    std::vector<Correction> mendings;
+    Coder coder;
+    RangeWriting side;
+    Prediction prediction;
+    std::vector<double> drawn;
+  };
+
   // Whether the curves follow a number; otherwise it comes back as it is.
   bool is_usable(std::size_t i) const {
     if (!task_.kept.empty() && task_.kept[i]) return false;
@@ -141,13 +140,8 @@ class Encoding {
       length = span_of(task_.plan.early, first, frames_ - first);
       const std::size_t count =
           std::min<std::size_t>(static_cast<std::size_t>(length), frames_ - first);
-      prediction_.begin_span(length);
-      for (std::size_t i = 0; i < coder_.channels.size(); ++i) span(i, first, length, count);
+      bounded_span(first, length, count);
       if (first + count < frames_) prediction_.end_span(count);
-    }
-    // What is kept anyway has no error that others may make good.
-    for (std::size_t i = 0; i < drawn_.size(); ++i) {
-      if (is_replaced(i)) drawn_[i] = wanted_[i];
     }
   }
 
@@ -182,6 +176,15 @@ class Encoding {
     prediction_ = prediction_of(coder_, task_.plan);
   }
 
+  void whole_span(std::size_t first, int length, std::size_t count) {
+    prediction_.begin_span(length);
+    for (std::size_t i = 0; i < coder_.channels.size(); ++i) span(i, first, length, count);
+    // What is kept anyway has no error that others may make good.
+    for (std::size_t i = first * channels_; i < (first + count) * channels_; ++i) {
+      if (is_replaced(i)) drawn_[i] = wanted_[i];
+    }
+  }
+
   void span(std::size_t i, std::size_t first, int length, std::size_t count) {
     Channel& channel = coder_.channels[i];
     channel.begin_span(length);
@@ -202,7 +205,7 @@ class Encoding {
         value -= *share++ * (drawn_[at + other] - wanted_[at + other]);
       }
       values[f] = value - predicted[f];
-      costs[f] = costs_[at + c] * raised_[at + c];
+      costs[f] = costs_[at + c] * raised_[f * channels_ + c];
     }
     const double bit_cost = task_.rate * task_.scale * task_.scale;
     const Target target{values.data(), costs.data(), steps_[c], bit_cost, task_.tries_knots};
@@ -230,146 +233,96 @@ class Encoding {
     channel.blocks.push_back(block);
   }
 
-  // The largest error of a point, without a rig of a value.
-  double bound_of(std::size_t point) const {
-    if (measure_.rig) return task_.most[point];
-    return std::min(task_.most[point], task_.value_most[point] * measure_.others[point]);
-  }
-
-  bool within(const double* errors) const {
-    const std::size_t count = measure_.points(channels_);
-    for (std::size_t p = 0; p < count; ++p) {
-      if (!(errors[p] <= bound_of(p))) return false;
+  // Codes a span, several times where errors are beyond their bounds: costlier errors may cost more
+  // bits than corrections, so that the cheapest way stays.
+  void bounded_span(std::size_t first, int length, std::size_t count) {
+    raised_.assign(static_cast<std::size_t>(length) * channels_, 1.0F);
+    if (!bounds_.any()) return whole_span(first, length, count);
+    const Coder coder = coder_;
+    const RangeWriting side = side_;
+    Way best;
+    for (int round = 0;; ++round) {
+      whole_span(first, length, count);
+      std::vector<Beyond> beyond;
+      Way way = measured(first, count, beyond);
+      const bool is_last = beyond.empty() || round == task_.rounds;
+      const bool is_best = way.cost < best.cost;
+      if (is_best && is_last) {
+        best.mendings = std::move(way.mendings);
+        break;
+      }
+      if (is_best) {
+        best = std::move(way);
+        best.coder = coder_;
+        best.side = side_;
+        best.prediction = prediction_;
+        best.drawn.assign(&drawn_[first * channels_],
+                          &drawn_[first * channels_] + count * channels_);
+      }
+      if (is_last) {
+        coder_ = std::move(best.coder);
+        side_ = std::move(best.side);
+        prediction_ = std::move(best.prediction);
+        std::copy(best.drawn.begin(), best.drawn.end(), &drawn_[first * channels_]);
+        break;
+      }
+      raise(beyond, first, count, round);
+      coder_ = coder;
+      side_ = side;
     }
-    return true;
+    for (Correction& one : best.mendings) {
+      for (const auto& [c, times] : one.added) {
+        drawn_[one.frame * channels_ + c] += times * part_of(steps_[c], one.fineness);
+      }
+      corrections_.push_back(std::move(one));
+    }
   }
 
-  // By how much each point of each frame is beyond its bound, as a ratio; whether any is.
-  template <class Each>
-  bool beyond(const Measure& measure, const std::vector<double>& wanted, Each&& each) const {
-    std::vector<double> errors(measure.points(channels_));
-    bool any = false;
-    for (std::size_t f = 0; f < frames_; ++f) {
-      measure.errors(&wanted[f * channels_], &drawn_[f * channels_], channels_, errors.data());
+  // What a span costs as it was coded, in bits, with its corrections.
+  Way measured(std::size_t first, std::size_t count, std::vector<Beyond>& beyond) const {
+    Way way;
+    std::vector<double> errors(task_.weights.size());
+    double squares = 0;
+    for (std::size_t f = first; f < first + count; ++f) {
+      measure_.errors(&wanted_[f * channels_], &drawn_[f * channels_], channels_, errors.data());
+      bounds_.add_beyond(f, errors.data(), beyond);
       for (std::size_t p = 0; p < errors.size(); ++p) {
-        const double most = bound_of(p);
-        if (errors[p] <= most) continue;
-        any = true;
-        each(f, p, errors[p] / most);
+        squares += task_.weights[p] * errors[p] * errors[p];
       }
     }
-    return any;
+    way.cost = squares / (task_.rate * task_.scale * task_.scale) +
+               8.0 * static_cast<double>(RangeWriting(side_).finish().size());
+    std::vector<std::size_t> points;
+    for (std::size_t i = 0; i < beyond.size(); ++i) {
+      const std::size_t f = beyond[i].frame;
+      points.push_back(beyond[i].point);
+      if (i + 1 < beyond.size() && beyond[i + 1].frame == f) continue;
+      Mending found = bounds_.mend(f, points, &wanted_[f * channels_], &drawn_[f * channels_]);
+      points.clear();
+      way.cost += std::min(found.bits, 64.0 * static_cast<double>(channels_));
+      if (!found.correction.added.empty()) way.mendings.push_back(std::move(found.correction));
+    }
+    if (!(way.cost < kInfinite)) way.cost = std::numeric_limits<double>::max();
+    return way;
   }
 
   // Makes errors costlier in channels that move what is beyond its bound, around its frame.
-  bool raise(int round) {
+  void raise(const std::vector<Beyond>& beyond, std::size_t first, std::size_t count, int round) {
     std::vector<float> times(raised_.size(), 1.0F);
-    const auto costlier = [&](std::size_t frame, std::size_t point, double ratio) {
-      const auto by = static_cast<float>(std::min(4.0, 1.6 * ratio * ratio));
-      for (const std::size_t c : movers(point, round < 2 ? 3 : channels_)) {
-        for (std::size_t f = frame - std::min<std::size_t>(frame, 3);
-             f < std::min(frame + 4, frames_); ++f) {
-          float& own = times[f * channels_ + c];
-          own = std::max(own, by);
+    for (const Beyond& one : beyond) {
+      const auto by = static_cast<float>(std::min(4.0, 1.6 * one.ratio * one.ratio));
+      const std::size_t own = one.frame - first;
+      for (const std::size_t c : bounds_.movers({one.point}, round < 2 ? 3 : task_.most.size())) {
+        for (std::size_t f = own - std::min<std::size_t>(own, 3); f < std::min(own + 4, count);
+             ++f) {
+          float& most = times[f * channels_ + c];
+          most = std::max(most, by);
         }
       }
-    };
-    const bool any = beyond(measure_, wanted_, costlier);
-    for (std::size_t i = 0; i < times.size(); ++i)
+    }
+    for (std::size_t i = 0; i < times.size(); ++i) {
       raised_[i] = std::min(raised_[i] * times[i], 3e4F);
-    return any;
-  }
-
-  // The channels that move a point, those of the nearest joints.
-  std::vector<std::size_t> movers(std::size_t point, std::size_t joints) const {
-    if (!measure_.rig) return {point};
-    const Rig& rig = *measure_.rig;
-    if (by_joint_.empty()) {
-      by_joint_.resize(rig.joints());
-      for (const auto& action : rig.actions()) by_joint_[action.joint].push_back(action.column);
     }
-    std::vector<std::size_t> found;
-    for (auto j = static_cast<std::int32_t>(point); j >= 0 && joints > 0;
-         j = rig.parent(static_cast<std::size_t>(j))) {
-      const auto& own = by_joint_[static_cast<std::size_t>(j)];
-      found.insert(found.end(), own.begin(), own.end());
-      if (!own.empty()) --joints;
-    }
-    return found;
-  }
-
-  // Of each frame that is beyond a bound, corrections that bring it back.
-  std::vector<Correction> correct() {
-    std::vector<std::vector<std::size_t>> points(frames_);
-    beyond(measure_, wanted_,
-           [&](std::size_t frame, std::size_t point, double) { points[frame].push_back(point); });
-    std::vector<Correction> corrections;
-    for (std::size_t f = 0; f < frames_; ++f) {
-      if (points[f].empty()) continue;
-      Correction best{f, 0, {}};
-      double least = kInfinite;
-      for (const std::size_t joints : {std::size_t{1}, std::size_t{2}, std::size_t{4}, channels_}) {
-        std::vector<std::size_t> near;
-        for (const std::size_t point : points[f]) {
-          for (const std::size_t c : movers(point, joints)) near.push_back(c);
-        }
-        choose(near, best, least);
-      }
-      std::vector<std::size_t> all(channels_);
-      std::iota(all.begin(), all.end(), std::size_t{0});
-      if (best.added.empty()) choose(all, best, least);
-      if (best.added.empty()) continue;
-      for (const auto& [c, times] : best.added) {
-        drawn_[f * channels_ + c] += times * part_of(steps_[c], best.fineness);
-      }
-      corrections.push_back(std::move(best));
-    }
-    return corrections;
-  }
-
-  // The coarsest correction of these channels that is enough, without what it can do without, if it
-  // is cheaper than the least so far.
-  void choose(std::vector<std::size_t> candidates, Correction& best, double& least) const {
-    std::sort(candidates.begin(), candidates.end());
-    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
-    for (int fineness = 0; fineness < 16; ++fineness) {
-      Correction one{best.frame, fineness, {}};
-      if (!moved_back(one, candidates)) continue;
-      for (std::size_t k = one.added.size(); k-- > 0 && one.added.size() > 1;) {
-        Correction fewer = one;
-        fewer.added.erase(fewer.added.begin() + static_cast<std::ptrdiff_t>(k));
-        if (is_enough(fewer)) one = std::move(fewer);
-      }
-      double bits = 8;
-      for (const auto& [c, times] : one.added) bits += 6 + 2 * std::log2(std::abs(times));
-      if (bits < least) {
-        least = bits;
-        best = std::move(one);
-      }
-      return;
-    }
-  }
-
-  // Whether a frame is within its bound with a correction.
-  bool is_enough(const Correction& one) const {
-    std::vector<double> row(&drawn_[one.frame * channels_],
-                            &drawn_[one.frame * channels_] + channels_);
-    for (const auto& [c, times] : one.added) row[c] += times * part_of(steps_[c], one.fineness);
-    std::vector<double> errors(measure_.points(channels_));
-    measure_.errors(&wanted_[one.frame * channels_], row.data(), channels_, errors.data());
-    return within(errors.data());
-  }
-
-  // Whether these channels, moved to the nearest part of a step, bring a frame within its bound.
-  bool moved_back(Correction& one, const std::vector<std::size_t>& candidates) const {
-    for (const std::size_t c : candidates) {
-      const std::size_t at = one.frame * channels_ + c;
-      const double times =
-          std::round((wanted_[at] - drawn_[at]) / part_of(steps_[c], one.fineness));
-      if (times == 0 || std::fabs(times) > 1e9) continue;
-      one.added.emplace_back(c, static_cast<std::int32_t>(times));
-    }
-    return !one.added.empty() && is_enough(one);
   }
 
   // What is no number, and what is still beyond a bound.
@@ -379,9 +332,14 @@ class Encoding {
       const double error = std::fabs(given_[i] - drawn_[i]);
       keeps[i] = is_replaced(i) || !(error <= task_.value_most[i % channels_]);
     }
-    beyond(file_measure_, whole_, [&](std::size_t frame, std::size_t, double) {
-      std::fill_n(&keeps[frame * channels_], channels_, 1);
-    });
+    std::vector<double> errors(task_.most.size());
+    for (std::size_t f = 0; f < frames_ && bounds_.any(); ++f) {
+      std::vector<Beyond> beyond;
+      file_measure_.errors(&whole_[f * channels_], &drawn_[f * channels_], channels_,
+                           errors.data());
+      bounds_.add_beyond(f, errors.data(), beyond);
+      if (!beyond.empty()) std::fill_n(&keeps[f * channels_], channels_, 1);
+    }
     std::vector<Kept> kept;
     for (std::size_t c = 0; c < channels_; ++c) {
       for (std::size_t f = 0; f < frames_; ++f) {
@@ -401,9 +359,10 @@ class Encoding {
   const Measure& file_measure_;  // of the values
   std::vector<double> whole_;    // what is to be decoded, without gaps
   std::vector<double> wanted_;   // what the curves are to be
-  std::vector<float> raised_;    // how much more errors cost
+  std::vector<float> raised_;    // how much more errors cost in a span
   std::vector<bool> moves_;
   const std::vector<double>& steps_;
+  Bounds bounds_;
   std::vector<double> costs_;
   std::vector<float> shares_;
   std::size_t pairs_ = 0;
@@ -414,7 +373,7 @@ class Encoding {
   Prediction prediction_;
   std::vector<double> drawn_;
   std::vector<Angles> starts_;
-  mutable std::vector<std::vector<std::size_t>> by_joint_;
+  std::vector<Correction> corrections_;
 };
 
 }  // namespace

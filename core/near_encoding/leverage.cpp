@@ -52,6 +52,19 @@ void Measure::errors(const double* row, const double* other, std::size_t channel
   }
 }
 
+std::vector<Vector> Measure::places(const double* row) const {
+  std::vector<double> joints(3 * rig->points()), turns(4 * rig->joints());
+  rig->place(row, joints.data(), turns.data());
+  std::vector<Vector> found;
+  for (std::size_t j = 0; j < rig->joints(); ++j) {
+    const Vector place = found.emplace_back(at(&joints[3 * j]));
+    for (const Vector& axis : axes_of(&turns[4 * j])) {
+      found.push_back(sum(place, scaled(axis, radius)));
+    }
+  }
+  return found;
+}
+
 Leverage::Leverage(const Measure& measure, std::size_t channels, std::vector<double> weights,
                    std::vector<bool> moves)
     : measure_(measure), channels_(channels), weights_(std::move(weights)), before_(channels) {

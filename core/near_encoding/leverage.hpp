@@ -22,6 +22,8 @@ struct Measure {
   std::size_t points(std::size_t channels) const { return rig ? rig->joints() : channels; }
   // The errors of a frame, `points` of them; without a rig, as the channels count.
   void errors(const double* row, const double* other, std::size_t channels, double* errors) const;
+  // With a rig: of each joint its place and its three points.
+  std::vector<Vector> places(const double* row) const;
 };
 
 // Of every channel what it costs to be off by 1, squared, after all channels behind it have made

@@ -268,6 +268,11 @@ MOCAPRESS_IN_PLACE Cut block_of(Coder& coder, const Plan& plan, const Target& ta
   cut.cost = best;
   cut.curve.resize(static_cast<std::size_t>(n));
   draw(block, last, target.step, plan, cut.curve.data());
+  // What errors cost where they are, instead of on average.
+  for (int t = 0; t < n - 1; ++t) {
+    const double off = cut.curve[static_cast<std::size_t>(t)] - wanted[t];
+    cut.cost += (target.costs[start + t] - cost) * off * off;
+  }
   return cut;
 }
 

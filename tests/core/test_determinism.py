@@ -43,7 +43,8 @@ WAYS = {
     "-O0": Way("o0"),
     "-O3 for any x86-64": Way("baseline", seldom=True),
     "AVX2 and FMA": Way("avx2", features=FUSED, seldom=True),
-    "AVX-512": Way("avx512", features=V4),
+    # Where there is AVX-512, the package takes its clones for it.
+    "AVX-512": Way("avx512", features=V4, seldom=True),
     "clang with AVX2 and FMA": Way("clang", "clang++", FUSED),
     "clang -O0": Way("clang_o0", "clang++", seldom=True),
     "aarch64, emulated": Way("aarch64", "aarch64-linux-gnu-g++", under=("qemu-aarch64",)),
