@@ -39,9 +39,7 @@ def main(folders: list[Path]) -> None:
         for level, below, own in zip(LEVELS[1:], column, column[1:], strict=False)
         if own > MOST * below
     ]
-    print(
-        f"\n{len(larger)} of {len(measured)} files times {len(LEVELS) - 1} are larger by 0.2 %.\n"
-    )
+    print(f"{len(larger)} of {len(measured)} files times {len(LEVELS) - 1} are larger by 0.2 %.\n")
     if larger:
         print(markdown(["file", "level", "bytes", "more"], larger))
 
