@@ -102,21 +102,20 @@ Network::Told Network::tell(std::size_t c, const Known& known) {
   double move = outputs[0] / kOne;
   double scale = outputs[1] / kOne;
   if (tuning_) {
-    const Tuning::Sums sums = tune(hidden);
+    const Tuning::Sums sums = tuning_->tell(features(hidden));
     move += sums.move;
     scale += sums.scale;
   }
   return {cut(move, kMostUnits), natural_exp(cut(scale, 2))};
 }
 
-// Features: the last hidden layer, the inputs, 1.
-Tuning::Sums Network::tune(const Value* hidden) {
+std::array<double, kHidden + Network::kInputs + 1> Network::features(const Value* hidden) const {
   std::array<double, kHidden + kInputs + 1> features;
   static_assert(features.size() <= Tuning::kFeatures);
   for (std::size_t i = 0; i < kHidden; ++i) features[i] = hidden[i] / double{1 << kValueBits};
   std::ranges::copy(inputs_, features.begin() + kHidden);
   features.back() = 1;
-  return tuning_->tell(features);
+  return features;
 }
 
 void Network::see(std::size_t c, double residual, double span) {

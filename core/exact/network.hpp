@@ -58,7 +58,8 @@ class Network {
   static constexpr std::size_t kFrames = 9;  // of which spans are kept
 
   void gather(std::size_t channel, const Known& known);
-  Tuning::Sums tune(const std::int16_t* hidden);
+  // What the tuning works with: the last hidden layer, the inputs, 1.
+  std::array<double, kHidden + kInputs + 1> features(const std::int16_t* hidden) const;
 
   std::array<double, kInputs> inputs_{};
   std::array<Lanes, kFrames> logs_;                  // of the spans, by age
