@@ -381,6 +381,27 @@ def test_angles_of_turned_joints_come_back_as_the_file_writes_them(clip: Clip) -
     assert np.abs(found.values - clip.values).max() < 6
 
 
+def test_angles_that_leap_to_others_of_the_same_turn_cost_next_to_nothing() -> None:
+    clip = arm(300)
+    values = clip.values.copy()
+    # With the middle angle mirrored and half turns beside it, the same turn: frames by chance.
+    leaps = np.random.default_rng(3).random((300, 4)) < 0.3
+    for joint, (first, leap) in enumerate(zip(range(3, 15, 3), leaps.T, strict=True)):
+        half = 180 if joint % 2 else -180
+        values[leap, first] += half
+        values[leap, first + 1] = 180 - values[leap, first + 1]
+        values[leap, first + 2] -= half
+    leaping = clip.with_values(values)
+    assert joint_errors(clip, leaping, 3).max() < 1e-9
+    codec = mp.codec(CODEC)
+    sizes = [
+        sum(len(chunk.payload) for chunk in codec.encode(one.main, skeleton=one.skeleton).chunks)
+        for one in (clip, leaping)
+    ]
+    assert sizes[1] < 1.05 * sizes[0]
+    assert joint_errors(clip, decoded_by(codec, leaping), 3).max() <= 0.1
+
+
 @pytest.mark.parametrize("rate", [240, 120, 24])
 def test_any_frame_rate_will_do(samples: Path, rate: int) -> None:
     clip = mp.read(samples / "cmu_01_01.amc")[: 150 if rate > 120 else 600 : max(1, 120 // rate)]

@@ -1,6 +1,7 @@
 """Tables of numbers come back byte for byte in every dialect, and say what they hold."""
 
 import random
+import re
 import warnings
 from fractions import Fraction
 from pathlib import Path
@@ -10,6 +11,7 @@ import pytest
 from table_files import markers, odd_table, trc
 
 import mocapress as mp
+from mocapress.formats import printed_floats
 from mocapress.formats.table_layout import NUMBERS, SERIES, TableLayout, read_layout
 from mocapress.source import Source
 
@@ -65,6 +67,27 @@ def test_float32_printed_as_decimals_are_coded_as_floats_and_read_as_printed(num
         assert np.array_equal(clip.values, np.array(expected), equal_nan=True)
     part = mp.load(blob, frames=slice(30, 33)).values  # so few that they could be anything
     assert np.array_equal(part, np.array(expected)[30:33], equal_nan=True)
+
+
+def test_each_column_is_judged_alone_whether_it_was_float32(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(printed_floats, "_TOGETHER", 100)  # two columns at a time
+    numbers = np.random.default_rng(2).normal(scale=300, size=(40, 6))
+    numbers[:, 2] = numbers[:, 2].round(2)
+    numbers[:, 3] = numbers[:, 3].round()
+    numbers[:, 4] *= 1e60
+    numbers[5, :2] = np.nan
+    printed = ["{:.9f}", "{:.9f}", "{:.2f}", "{:.9f}", "{:.9f}", "{:.17g}"]
+    numbers[:, :2] = numbers[:, :2].astype(np.float32)
+    rows = [[f.format(x) for f, x in zip(printed, row, strict=True)] for row in numbers.tolist()]
+    data = ("a,b,c,d,e,f\n" + "\n".join(map(",".join, rows)) + "\n").encode()
+    stored = Source(data, "a.csv").split().clip.values
+    assert np.array_equal(stored, numbers, equal_nan=True)
+    read = np.array(rows, np.float64)
+    assert not np.array_equal(read, numbers, equal_nan=True)
+    assert np.array_equal(mp.read(data).values, read, equal_nan=True)
+    layout_of(data)
 
 
 def test_counters_and_times_are_no_numbers_to_code() -> None:
@@ -173,6 +196,48 @@ def test_rows_that_are_broken_are_named_and_cost_no_others(
 def test_what_stands_behind_a_table_is_named() -> None:
     with pytest.warns(mp.MotionWarning, match="something behind the last row"):
         assert mp.read(trc(markers()) + b"end of file\r\n").frames == 150
+
+
+@pytest.mark.parametrize(
+    ("sizes", "told"),
+    [
+        ((200, 20), "line 203: rows of another table behind.*lines 3 to 202 are read"),
+        ((20, 200), "line 3: rows of another table before.*lines 26 to 225 are read"),
+    ],
+)
+def test_of_several_tables_it_is_said_which_was_read(sizes: tuple[int, int], told: str) -> None:
+    numbers = np.random.default_rng(1).normal(size=(200, 7)).round(3)
+    tables = [numbers[: sizes[0], :4], numbers[: sizes[1]]]
+    data = "\n".join(
+        f"table {i}\n" + "".join(",".join(map(str, row)) + "\n" for row in [[*"abcdefg"], *rows])
+        for i, rows in enumerate(table.tolist() for table in tables)
+    ).encode()
+    with pytest.raises(mp.FormatError, match=told):
+        mp.read(data)
+    with pytest.warns(mp.MotionWarning, match=told):
+        clip = mp.read(data, strict=False)
+    assert np.array_equal(clip.values, tables[int(np.argmax(sizes))])
+    first, last = map(int, re.findall(r"lines (\d+) to (\d+)", told)[0])
+    alone = b"".join(data.splitlines(keepends=True)[first - 1 : last])
+    assert np.array_equal(mp.read(alone).values, clip.values)
+
+
+def test_a_matrix_in_a_header_is_no_other_table() -> None:
+    rows = "".join(f"{i * i}.5;{i**3}\n" for i in range(30))
+    data = f"offsets\n1;0;0;0\n0;1;0;0\n0;0;1;0\n0;0;0;1\nx;y\n{rows}".encode()
+    assert mp.read(data).frames == 30
+
+
+def test_two_columns_with_decimal_commas_are_two_numbers() -> None:
+    numbers = np.random.default_rng(5).normal(size=(30, 2)).round(3)
+    rows = "".join(f"{x:.3f};{y:.3f}\n".replace(".", ",") for x, y in numbers.tolist())
+    assert np.array_equal(mp.read(f"x;y\n{rows}".encode()).values, numbers)
+
+
+def test_a_cell_that_is_no_number_is_told_as_it_stands_in_the_file() -> None:
+    rows = "".join(f"{i * i},25;{i**3},5\n" for i in range(40)).replace(";1000,", ";1.000,")
+    with pytest.raises(mp.FormatError, match=r"line 12: .*found '1\.000,5'"):
+        mp.read(f"x;y\n{rows}".encode())
 
 
 @pytest.mark.parametrize("codec", ["patterns:arms=5mm", "diffma:bound=1"])

@@ -31,7 +31,8 @@ FLAGS = [
 ]
 LAPTOP = (1280, 800)
 PHONE = (390, 844)
-PATIENCE = 40.0
+PATIENCE = 60.0
+"""Seconds, on a machine that does much else."""
 
 DROP = """([files, zone]) => {
     const transfer = new DataTransfer();
@@ -71,6 +72,7 @@ class Visit:
 
     def __init__(self, page: Page) -> None:
         self.page = page
+        page.set_default_timeout(PATIENCE * 1000)
         self.logged: list[str] = []
         self.asked: list[str] = []
         page.on("console", self._log)

@@ -5,7 +5,7 @@ from itertools import groupby
 from typing import NamedTuple
 
 from mocapress.container import limits
-from mocapress.formats.number_formats import read_format, write_format
+from mocapress.formats.number_formats import read_format, record_of
 from mocapress.motion.clip import Column
 from mocapress.motion.columns import numbered_columns
 from mocapress.motion.skeleton import Skeleton
@@ -60,7 +60,7 @@ def write_columns(writer: Writer, columns: Sequence[Column], skeleton: Skeleton 
     formats = list(dict.fromkeys(column.decimal for column in columns if column.decimal))
     writer.integer(len(formats))
     for number_format in formats:
-        write_format(writer, number_format)
+        writer.data += record_of(number_format)
     places = {None: 0} | {number_format: i + 1 for i, number_format in enumerate(formats)}
     writer.runs([places[column.decimal] for column in columns])
 

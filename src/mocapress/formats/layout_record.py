@@ -7,7 +7,7 @@ import numpy as np
 from mocapress.errors import CorruptError
 from mocapress.formats.header_pattern import pattern_of
 from mocapress.formats.layout import MOST_TEMPLATES, Layout
-from mocapress.formats.number_formats import read_format, write_format
+from mocapress.formats.number_formats import read_format, record_of
 from mocapress.formats.patterns import (
     BREAK,
     COUNT,
@@ -41,7 +41,7 @@ def write_layout(layout: Layout, references: References) -> bytes:
     writer.bytes(style.indentation)
     writer.integer(len(style.formats))
     for number_format in style.formats:
-        write_format(writer, number_format)
+        writer.data += record_of(number_format)
     writer.bytes(pattern)
     writer.bytes(layout.tail)
     writer.integer(len(layout.templates))

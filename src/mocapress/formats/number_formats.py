@@ -1,7 +1,8 @@
 """Number formats as bytes, and numbers printed in them."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from decimal import Decimal
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 from mocapress import _core
 from mocapress.errors import UnsupportedError
 from mocapress.motion.number_format import NumberFormat, NumberKind
-from mocapress.records import Reader, Writer
+from mocapress.records import Reader
 
 SHORTEST = NumberFormat(NumberKind.SHORTEST)
 """How numbers are printed that were never text."""
@@ -23,6 +24,9 @@ _FLAGS = (
     "java",
     "javascript",
 )
+_KNOWN = 2**10
+"""Formats of which records are kept: a wide table asks for the same few over and over."""
+_LAST_KIND = max(NumberKind)
 _MOST_DIGITS = 40
 _MOST_EXPONENT_DIGITS = 8
 # Of a time or a rate that a header states: digits, and digits before or behind the point.
@@ -31,41 +35,33 @@ _STATED_DIGITS, _STATED_SIZE = 100, 18
 
 def packed(formats: Sequence[NumberFormat]) -> NDArray[np.uint8]:
     """Give formats as the compiled core and files have them: (C, 4) uint8."""
-    # Columns share the objects of their formats.
-    rows = {id(f): (f.kind, f.digits, f.exponent_digits, _flags(f)) for f in _distinct(formats)}
-    return np.array([rows[id(f)] for f in formats], dtype=np.uint8).reshape(len(formats), 4)
+    records = bytearray().join(map(record_of, formats))
+    return np.frombuffer(records, np.uint8).reshape(len(formats), 4)
 
 
-def _distinct(formats: Sequence[NumberFormat]) -> Iterable[NumberFormat]:
-    return {id(f): f for f in formats}.values()
+@lru_cache(_KNOWN)
+def record_of(f: NumberFormat) -> bytes:
+    """Give a format as a record (docs/format/layout.md, section "Number formats")."""
+    flags = sum(getattr(f, name) << bit for bit, name in enumerate(_FLAGS))
+    return bytes((f.kind, f.digits, f.exponent_digits, flags))
 
 
 def unpacked(rows: NDArray[np.uint8]) -> tuple[NumberFormat, ...]:
     """Give the formats that ``packed`` packs."""
-    told = [tuple(row) for row in rows.tolist()]
-    known = {row: _format(*row) for row in set(told)}
-    return tuple(known[row] for row in told)
+    return tuple(_format(*row) for row in rows.tolist())
 
 
+@lru_cache(_KNOWN)
 def _format(kind: int, digits: int, exponent_digits: int, flags: int) -> NumberFormat:
     own = (bool(flags >> bit & 1) for bit in range(len(_FLAGS)))
     return NumberFormat(NumberKind(kind), digits, exponent_digits, *own)
-
-
-def _flags(f: NumberFormat) -> int:
-    return sum(getattr(f, name) << bit for bit, name in enumerate(_FLAGS))
-
-
-def write_format(writer: Writer, f: NumberFormat) -> None:
-    """Append a format as a record (docs/format/layout.md, section "Number formats")."""
-    writer.data += bytes((f.kind, f.digits, f.exponent_digits, _flags(f)))
 
 
 def read_format(reader: Reader) -> NumberFormat:
     """Take a format."""
     kind, digits, exponent_digits, flags = reader.raw(4)
     if (
-        kind > max(NumberKind)
+        kind > _LAST_KIND
         or digits > _MOST_DIGITS
         or exponent_digits > _MOST_EXPONENT_DIGITS
         or flags & 192 == 192  # Java and JavaScript

@@ -151,11 +151,12 @@ def _way(lines: list[bytes]) -> _Way | None:
     """Choose the way in which most numbers are found in lines that are rows, mostly."""
     sample = lines[:: max(len(lines) // _SAMPLE, 1)]
 
-    def score(way: _Way) -> int:
-        return sum(map(way.numbers, sample))
+    def score(way: _Way) -> tuple[int, int]:
+        # 1,5;2,5 are two numbers by commas, too, with a text between them.
+        return sum(map(way.numbers, sample)), -way.width
 
     best = max(_ways(sample), key=score, default=None)
-    if best is None or not score(best):
+    if best is None or not score(best)[0]:
         return None
     mixed = _mixed(sample, best)
     return mixed if mixed and score(mixed) > score(best) else best

@@ -16,7 +16,7 @@ from mocapress import _core
 from mocapress.errors import CorruptError
 from mocapress.formats.contract import StoredLayout
 from mocapress.formats.encodings import MARKS, recoded
-from mocapress.formats.number_formats import SHORTEST, packed, read_format, write_format
+from mocapress.formats.number_formats import SHORTEST, read_format, record_of
 from mocapress.formats.rows import RowsOf
 from mocapress.motion.number_format import NumberFormat
 from mocapress.records import Reader, Writer
@@ -58,6 +58,7 @@ class Texts(NamedTuple):
 
 
 _NO_TEXTS = Texts()
+_ZERO = Fraction(0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,16 +73,15 @@ class TableColumn:
     """What stands for NaN."""
     text: bytes = b""
     """Of all cells, or all texts with line feeds between them."""
-    first: Fraction = Fraction(0)
-    step: Fraction = Fraction(0)
+    first: Fraction = _ZERO
+    step: Fraction = _ZERO
     others: Texts = _NO_TEXTS
     """Cells that have another text, by row."""
 
     def told(self) -> tuple[int, bytes, int, bytes, bytes, float, float, float]:
         """Give the column as the compiled core has it."""
-        numbers = _parts(self.first, self.step)
-        format_ = packed([self.format]).tobytes()
-        return (self.kind, format_, self.width, self.missing, self.text, *numbers)
+        numbers = _parts(self.first, self.step) if self.kind == SERIES else (0.0, 0.0, 1.0)
+        return (self.kind, record_of(self.format), self.width, self.missing, self.text, *numbers)
 
 
 def _parts(first: Fraction, step: Fraction) -> tuple[float, float, float]:
@@ -188,7 +188,7 @@ def _write_column(writer: Writer, column: TableColumn) -> None:
     if column.kind in (SAME, TEXTS):
         writer.bytes(column.text)
     else:
-        write_format(writer, column.format)
+        writer.data += record_of(column.format)
         writer.integer(column.width)
         writer.bytes(column.missing)
     if column.kind == SERIES:
@@ -243,9 +243,11 @@ def read_layout(data: bytes, kind: str) -> TableLayout:
 
 def _read_texts(reader: Reader, data: bytes, most_place: int, *, steps: bool) -> Texts:
     count = reader.count(2)
+    if not count:
+        return _NO_TEXTS
     begin = reader.position
     try:
-        end = _core.pass_texts(data, begin, count, most_place, steps) if count else begin
+        end = _core.pass_texts(data, begin, count, most_place, steps)
     except ValueError as error:
         raise reader.fail(str(error)) from error
     return Texts(count, reader.raw(end - begin))
@@ -253,7 +255,7 @@ def _read_texts(reader: Reader, data: bytes, most_place: int, *, steps: bool) ->
 
 def _read_column(reader: Reader, data: bytes, kind: int, rows: int) -> TableColumn:
     number_format, width, missing, text = SHORTEST, 0, b"", b""
-    first = step = Fraction(0)
+    first = step = _ZERO
     if kind in (SAME, TEXTS):
         text = reader.bytes()
     else:

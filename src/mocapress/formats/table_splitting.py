@@ -13,7 +13,7 @@ import numpy as np
 from mocapress import _core
 from mocapress.errors import FormatError
 from mocapress.formats.number_formats import printed, unpacked
-from mocapress.formats.printed_floats import as_floats
+from mocapress.formats.printed_floats import as_floats, coarser_floats
 from mocapress.formats.table_cutting import Cut, find_cut
 from mocapress.formats.table_layout import (
     NUMBERS,
@@ -81,21 +81,18 @@ def find_layout(
             break
         for place in wrong:
             columns[place] = replace(columns[place], kind=NUMBERS)
-    found = tuple(
-        replace(
-            column,
-            text=matcher.texts(place) if column.kind == TEXTS else column.text,
-            others=Texts(*matcher.others(place)),
-        )
-        for place, column in enumerate(columns)
-    )
+    counts = matcher.counts
+    for place, column in enumerate(columns):
+        if column.kind == TEXTS or counts[place]:
+            text = matcher.texts(place) if column.kind == TEXTS else column.text
+            columns[place] = replace(column, text=text, others=Texts(*matcher.others(place)))
     return TableLayout(
         kind,
         file.read(0, cut.begin),
         cut.delimiters,
         cut.line_break,
         file.read(cut.end, file.size),
-        found,
+        tuple(columns),
         matcher.rows,
         Texts(*matcher.verbatim()),
         cut.decimal_comma,
@@ -116,9 +113,10 @@ def numbers_of(file: Ranges, layout: TableLayout) -> Iterator[Values]:
 def _floats(layout: TableLayout, numbers: Values) -> Values:
     """Give the float32 that were printed, where columns are such."""
     stored = [column for column in layout.columns if column.kind == NUMBERS]
-    for place, column in enumerate(stored):
-        if not column.others.number:
-            numbers[:, place] = as_floats(np.ascontiguousarray(numbers[:, place]), column.format)
+    formats = [column.format for column in stored]
+    for place in coarser_floats(numbers, formats):
+        if not stored[place].others.number:
+            numbers[:, place] = as_floats(np.ascontiguousarray(numbers[:, place]), formats[place])
     return numbers
 
 

@@ -1,10 +1,8 @@
 """Tables of numbers: CSV and TSV of any program, and OpenSim's MOT and STO."""
 
-import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +14,8 @@ from mocapress.formats.bids import channels_beside
 from mocapress.formats.contract import Format, LongSplit, Near, Split
 from mocapress.formats.encodings import FileText
 from mocapress.formats.layout import NO_ROWS
-from mocapress.formats.printed_floats import as_printed
-from mocapress.formats.problems import BYTES_AFTER_END, UNREADABLE_ROWS, Problem
-from mocapress.formats.table_cutting import MISSING, NUMBER
+from mocapress.formats.printed_floats import as_printed, rounded_floats
+from mocapress.formats.table_cutting import MISSING
 from mocapress.formats.table_layout import (
     NUMBERS,
     SAME,
@@ -29,7 +26,8 @@ from mocapress.formats.table_layout import (
     read_layout,
     series,
 )
-from mocapress.formats.table_names import LINE_BREAK, header_of, text_of, time_of, unnamed
+from mocapress.formats.table_names import header_of, time_of, unnamed
+from mocapress.formats.table_problems import problems_of
 from mocapress.formats.table_splitting import find_layout, numbers_of, split_table
 from mocapress.formats.table_writing import with_frames, write_csv
 from mocapress.motion import Clip, Column, Skeleton, Stream
@@ -43,10 +41,6 @@ TABLE = "table"
 _ROWS_AT_LEAST = 3
 _NUMBERS_AT_LEAST = 1000
 """So many also tell a table, where rows are too long for three of them to be in the head."""
-_LONGEST_LINE = 2**12
-"""Bytes of a line behind the rows that are looked at."""
-_MOST_NAMED = 2**12
-"""Lines, and cells of a column, that are looked at to name those that are broken."""
 
 Values = NDArray[np.float64]
 
@@ -93,57 +87,6 @@ def _clip(layout: TableLayout, values: Values, name: str | None) -> Clip:
     return Clip({TABLE: stream}, None, Path(name).stem if name else "")
 
 
-def problems_of(layout: TableLayout) -> list[Problem]:
-    """Name rows that are left out, cells that are no numbers, and what stands behind the rows."""
-    found = []
-    first = len(LINE_BREAK.findall(layout.header)) + 1
-    lines = list(islice(layout.verbatim.items(steps=False), _MOST_NAMED))
-    broken = [(place, line) for place, line in lines if line.strip()]
-    if broken:
-        place, line = min(broken)
-        cells = _cells_of(line, layout.delimiters[0])
-        what = "a row of another length, which is left out" + _and_more(len(broken))
-        width = f"{len(layout.columns)} cells"
-        found.append(Problem.of(UNREADABLE_ROWS, what, first + place, None, width, str(cells)))
-    odd = [
-        (row, text)
-        for column in layout.columns
-        if column.kind == NUMBERS
-        for row, text in islice(column.others.items(steps=True), _MOST_NAMED)
-        if not (NUMBER.match(text.strip()) or MISSING.match(text.strip()))
-    ]
-    if odd:
-        row, cell = min(odd)
-        at = first + row + sum(place <= row for place, _ in lines)
-        what = "a cell that is no number" + _and_more(len(odd))
-        found.append(Problem.of(UNREADABLE_ROWS, what, at, None, "a number", repr(text_of(cell))))
-    if layout.tail.strip(b' \t\r\n"'):
-        rows = sum(map(_is_row, LINE_BREAK.split(layout.tail)[:_MOST_NAMED]))
-        if rows > 1:
-            at = first + layout.rows + len(lines)
-            what = "rows of another table behind the last row, which are left out"
-            found.append(Problem.of(UNREADABLE_ROWS, what, at))
-        else:
-            found.append(Problem.of(BYTES_AFTER_END, "something behind the last row"))
-    return found
-
-
-def _is_row(line: bytes) -> bool:
-    """Tell whether a line is mostly numbers, several of them, however it is cut."""
-    cells = re.split(rb"[\t,;| ]+", line[:_LONGEST_LINE])
-    numbers = sum(1 for cell in cells if NUMBER.match(cell.strip(b'"\r')))
-    return numbers > 1 and 2 * numbers >= len(cells)
-
-
-def _cells_of(line: bytes, delimiter: bytes) -> int:
-    return line.count(delimiter) + 1 if delimiter else len(line.split())
-
-
-def _and_more(count: int) -> str:
-    least = "at least " if count >= _MOST_NAMED else ""
-    return f" (and {least}{count - 1} more)" if count > 1 else ""
-
-
 def full_values(layout: TableLayout, values: Values) -> dict[int, Values]:
     """Give the numbers of all columns that hold such, by their place in the table.
 
@@ -156,11 +99,13 @@ def full_values(layout: TableLayout, values: Values) -> dict[int, Values]:
 
     """
     found = {}
-    stored = iter(np.ascontiguousarray(values.T))
+    stored = zip(np.ascontiguousarray(values.T), rounded_floats(values).tolist(), strict=True)
     for place, column in enumerate(layout.columns):
         if column.kind == NUMBERS:
-            numbers = next(stored)
-            found[place] = numbers if column.others.number else as_printed(numbers, column.format)
+            numbers, rounded = next(stored)
+            if rounded and not column.others.number:
+                numbers = as_printed(numbers, column.format)
+            found[place] = numbers
         elif column.kind == SAME:
             found[place] = np.full(len(values), _number(column.text))
         elif column.kind == SERIES and len(values) == layout.rows:
@@ -198,9 +143,10 @@ def described(layout: Any, clip: Clip, near: Near) -> Clip:
         for place, column in values.items()
         if not _is_text(layout.columns[place], named=names[place] != unnamed(place))
     }
-    named = named_columns([names[place] for place in kept])
+    own = distinct(names[place] for place in kept)
     columns = tuple(
-        replace(column, unit=units[place]) for place, column in zip(kept, named, strict=True)
+        Column(name, at, "v", units[place])
+        for at, (name, place) in enumerate(zip(own, kept, strict=True))
     )
     matrix = np.stack(list(kept.values()), axis=1)
     return replace(clip, streams={TABLE: Stream(matrix, columns, time)})
@@ -211,11 +157,6 @@ def stream_of(clip: Clip, name: str) -> Stream:
     if name not in clip.streams:
         raise CorruptError("streams", expected=repr(name), found=repr(", ".join(clip.streams)))
     return clip.streams[name]
-
-
-def named_columns(names: Sequence[str]) -> tuple[Column, ...]:
-    """Give columns of names; one that is there again is ``name#2``."""
-    return tuple(Column(name, place, "v") for place, name in enumerate(distinct(names)))
 
 
 def _recognised(head: bytes) -> bool:

@@ -57,9 +57,15 @@ def turnings_of(
         return []
     moderate = np.where(np.abs(values) < 1e9, values, 0.0)
     sample = _windows(moderate)
-    costs = np.stack([_costs(measure, sample, found, order, scale) for order in range(6)])
-    own_costs = costs[[each[3] for each in found], np.arange(len(found))]
-    chosen = np.where(costs.min(axis=0) < _GAIN * own_costs, costs.argmin(axis=0), -1)
+    costs = np.stack(
+        [
+            _costs(measure, sample, [(*each[:3], order, 0) for each in found], found, scale)
+            for order in range(6)
+        ]
+    )
+    # The file's own order counts among these, too: there the angles of a curve go on without leaps.
+    as_they_are = _costs(measure, sample, [], found, scale)
+    chosen = np.where(costs.min(axis=0) < _GAIN * as_they_are, costs.argmin(axis=0), -1)
     turnings = [
         (each[0], each[1], each[2], int(order), 0)
         for each, order in zip(found, chosen, strict=True)
@@ -99,12 +105,11 @@ def _windows(values: NDArray[np.float64]) -> NDArray[np.float64]:
 def _costs(
     measure: "Measure",
     sample: NDArray[np.float64],
-    turnable: Sequence[Turning],
-    order: int,
+    turnings: Sequence[Turning],
+    joints: Sequence[Turning],
     scale: float,
 ) -> NDArray[np.float64]:
-    """Give about how many bits every joint takes in an order, (J,)."""
-    turnings = [(*each[:3], order, 0) for each in turnable]
+    """Give about how many bits every joint takes by turnings, (J,)."""
     turned = _core.near_turned(measure.core, sample, turnings)
     curves = _core.near_turned_measure(measure.core, turnings)
     frames = np.ascontiguousarray(turned[:: max(1, len(turned) // 128)])
@@ -115,7 +120,7 @@ def _costs(
     cosines = np.sqrt(2 / size) * np.cos(np.pi * k * (2 * t + 1) / (2 * size))
     waves = np.einsum("kt,wtc->wkc", cosines, windows) * (levers / scale)
     bits = np.log2(1 + waves**2).sum(axis=(0, 1)) / 2
-    return np.array([bits[each[0] : each[0] + 3].sum() for each in turnable])
+    return np.array([bits[each[0] : each[0] + 3].sum() for each in joints])
 
 
 def nearest(
