@@ -12,6 +12,7 @@ namespace {
 constexpr std::uint64_t kBlock = 512;
 constexpr std::uint64_t kInPoint = 4;
 constexpr std::uint64_t kInRotation = 17;
+constexpr std::uint64_t kCounts = 1 << 16;
 constexpr std::size_t kMostParameters = 1 << 14;
 
 // Reads numbers as the file's processor wrote them; 0 beyond the end.
@@ -230,11 +231,16 @@ C3dLayout c3d_layout(ByteView data, std::uint64_t file_size) {
         const std::uint64_t most = (end - begin) / (numbers * size);
         std::vector<std::uint64_t> tried = counts;
         add(tried, most);
+        // The header's count of 16 bits has overflowed in a long file, or stands at its end.
+        const std::uint64_t wrapped = most > range ? most - (most - range) % kCounts : range;
+        const bool long_file = most == wrapped || (range == kCounts - 1 && most > range);
+        add(tried, wrapped);
         for (const std::uint64_t count : tried) {
           if (count == 0 || count > most) continue;
           const std::uint64_t rest = end - begin - count * numbers * size;
           const bool divides = analog % samples == 0;
-          const bool announced = count != most || std::ranges::find(counts, most) != counts.end();
+          const bool announced =
+              count != most || long_file || std::ranges::find(counts, most) != counts.end();
           const Candidate one{of_points,
                               analog,
                               divides ? samples : 1,

@@ -18,6 +18,7 @@ from mocapress.formats.c3d import split
 from mocapress.formats.c3d_layout import C3dLayout, read_layout
 from mocapress.formats.c3d_parameters import described
 from mocapress.motion import Clip, Stream
+from mocapress.source import Source
 
 ENCODINGS = [(processor, floats) for processor in (INTEL, DEC, MIPS) for floats in (True, False)]
 
@@ -102,6 +103,20 @@ def test_headers_that_are_wrong_are_seen_through() -> None:
         wrong = swapped(data, at, number)
         assert mp.read(wrong).streams["analog"].values.shape == (160, 3)
         assert again(wrong) == wrong
+
+
+@pytest.mark.parametrize("stated", [65535, 66000 - 65536])
+@pytest.mark.parametrize("channels", [0, 2])
+def test_a_count_of_16_bits_may_be_too_small(stated: int, channels: int) -> None:
+    random = np.random.default_rng(3)
+    points = random.normal(size=(66000, 1, 3)).astype(np.float32).astype(np.float64)
+    analog = random.normal(size=(132000, channels // 2)).astype(np.float32).astype(np.float64)
+    data = c3d(points, np.zeros((66000, 1)), analog, samples=2, announced=stated)
+    data += b"\0" * (-len(data) % 512)
+    clip = Source(data, "a.c3d").split().clip
+    assert np.array_equal(clip.streams["points"].values, points.reshape(-1, 3))
+    if channels:
+        assert np.array_equal(clip.streams["analog"].values, analog)
 
 
 def test_frames_that_are_missing_or_too_many_are_named() -> None:

@@ -35,6 +35,8 @@ from mocapress.motion.markers import ANALOG, CAMERAS, POINTS, RESIDUALS, ROTATIO
 from mocapress.records import Held, Ranges
 
 _BLOCK = 512
+_MOST_ANNOUNCED = 2**16 - 1
+"""Frames; a header that announces them may mean more."""
 _HEAD = 2**20
 """Bytes that tell how the frames are laid out."""
 _SAMPLED = 64
@@ -107,6 +109,9 @@ def _find_frames(file: Ranges, name: str | None) -> tuple[C3dLayout, tuple[Probl
     )
     begin, count, numbers = frames
     turned_at, turns, in_turn = turned
+    if announced == _MOST_ANNOUNCED < count:
+        size = numbers * (4 if floats else 2)
+        count -= _padding(file, begin + count * size, size)
     if not count and not turns:
         raise FormatError(
             "the frames cannot be found",
@@ -129,6 +134,12 @@ def _find_frames(file: Ranges, name: str | None) -> tuple[C3dLayout, tuple[Probl
         np.empty(0, np.uint32),
     )
     return layout, tuple(_problems(announced, count or turns, file.size, begin))
+
+
+def _padding(file: Ranges, end: int, size: int) -> int:
+    """Count frames of zeros before an end that only fill the file's last block."""
+    last = file.read(max(end - _BLOCK, 0), end)
+    return (len(last) - len(last.rstrip(b"\0"))) // size
 
 
 def _find_layout(
@@ -193,7 +204,7 @@ def _problems(announced: int, found: int, size: int, begin: int) -> list[Problem
         what = "the file ends before its last frame"
         return [Problem.of(MISSING_ROWS, what, None, size, f"{announced} frames", str(found))]
     # Counts of 16 bits overflow in long files, which other parameters then say.
-    if announced < found < 2**16 - 1:
+    if announced < found < _MOST_ANNOUNCED:
         what = "more frames than the header announces"
         return [Problem.of(EXTRA_ROWS, what, None, begin, f"{announced} frames", str(found))]
     return []
