@@ -16,6 +16,7 @@ from mocapress.codecs.near import Near
 from mocapress.codecs.near.encoding import Encoder
 from mocapress.codecs.near.figure import RADIUS
 from mocapress.codecs.near.goal import Goal
+from mocapress.codecs.near.search import encode
 from mocapress.motion.units import centimetres_per_unit, figure_size
 from mocapress_bench.tables import markdown
 from near_rates import Rival, rivals
@@ -70,7 +71,7 @@ def size_of(path: Path, rival: Rival, change: Callable[[Encoder], None] | None) 
     encoder = Encoder(goal, inf, Near().chunk, clip.main, clip.skeleton)
     if change:
         change(encoder)
-    encoded = encoder.encode()
+    encoded = encode(encoder, Near().effort)
     return len(encoded.header) + sum(len(chunk.payload) for chunk in encoded.chunks)
 
 

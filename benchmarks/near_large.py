@@ -54,7 +54,7 @@ def row(folder: Path, goal: str, frames: int) -> list[str]:
     asked = replace(near.goal(clip.skeleton, clip.columns), most=inf)
     encoder = Encoder(asked, inf, near.chunk, clip.main, clip.skeleton)
     started = process_time()
-    encoder._chunks(2.5 * asked.mean, encoder.most)
+    encoder.chunks(2.5 * asked.mean, encoder.most)
     once = process_time() - started
     return [
         *(goal, f"{clip.frames}", f"{sum(len(chunk.payload) for chunk in encoded.chunks)}"),

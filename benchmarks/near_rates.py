@@ -23,6 +23,7 @@ from mocapress.codecs.near import Near
 from mocapress.codecs.near.encoding import Encoder
 from mocapress.codecs.near.figure import RADIUS
 from mocapress.codecs.near.goal import Goal
+from mocapress.codecs.near.search import encode
 from mocapress.motion.units import centimetres_per_unit, figure_size
 from mocapress_bench.tables import markdown
 
@@ -71,7 +72,7 @@ def row(path: Path, precision: float, rival: Rival, tight: bool, chunk: int) -> 
     goal = Goal(True, wanted / unit, most / unit, RADIUS / unit, figure_size(clip.skeleton))
     begin = thread_time()
     encoder = Encoder(goal, inf, chunk, clip.main, clip.skeleton)
-    encoded = encoder.encode()
+    encoded = encode(encoder, Near().effort)
     coded = thread_time()
     values = Near(chunk=chunk).decode(encoded.header, encoded.chunks, clip.columns)
     decoded = thread_time()

@@ -45,7 +45,7 @@ int main() {
   bool same = true;
   const auto motion = check::motion(kFrames, kChannels, 1);
   const auto noise = check::noise(60 * kChannels, 2);
-  for (const int level : {1, 2, 3, 4, 5, 6, 7, 8, 9}) {
+  for (const int level : {1, 2, 3, 4, 5, 6, 7, 8, 9, exact::kStrongest}) {
     same &= check_one("on a grid", kChannels, motion, mocapress::Line::decimals, 4, level);
     same &= check_one("in six digits", kChannels, motion, mocapress::Line::significant, 6, level);
     same &= check_one("printed floats", kChannels, motion, mocapress::Line::printed32, 6, level);
@@ -54,7 +54,7 @@ int main() {
     same &= check_one("noise", kChannels, noise, mocapress::Line::float64, 0, level);
   }
   constexpr std::size_t kAll = exact::kSkeletonChannels;
-  for (const int level : {5, 9}) {
+  for (const int level : {5, 9, exact::kStrongest}) {
     same &= check_one("skeleton", kAll, check::motion(kFrames / 4, kAll, 3),
                       mocapress::Line::decimals, 4, level);
   }

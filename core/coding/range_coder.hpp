@@ -46,6 +46,9 @@ class RangeEncoder {
     }
   }
 
+  // About how many bytes there are by now.
+  std::size_t size() const { return coded_.size() + raw_.size(); }
+
   // What was coded; the encoder is used up.
   Bytes finish() {
     flush();

@@ -33,6 +33,7 @@ class Writing {
   void put(Interval interval) { encoder_.put(interval); }
   void fail() {}
 
+  std::size_t size() const { return encoder_.size(); }
   Bytes finish() { return encoder_.finish(); }
 
  private:

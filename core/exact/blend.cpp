@@ -5,8 +5,6 @@
 namespace mocapress::exact {
 namespace {
 
-constexpr std::array kFadings = {0.94, 0.985, 0.998};
-constexpr double kRidge = 1;
 constexpr double kErrorRate = 0.05;
 constexpr double kMostSquared = 25;
 constexpr double kFarthest = 6;  // an error beyond so many scales counts as one of them
@@ -31,12 +29,12 @@ void judge(const Block* values, const Block* means, const Block* scales, const B
 
 }  // namespace
 
-Blends::Blends(std::size_t channels, std::size_t predictors, std::size_t memories)
+Blends::Blends(std::size_t channels, std::size_t predictors, const Plan& plan)
     : predictors_(predictors), means_(channels, 0), values_(channels, 0), scales_(channels, 1) {
   for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] = 1 / static_cast<double>(i);
   if (predictors < 2) return;
-  for (std::size_t k = 0; k < memories; ++k) {
-    memories_.push_back({ParallelChains(channels, predictors, kFadings[k], kRidge),
+  for (const double fading : plan.fadings) {
+    memories_.push_back({ParallelChains(channels, predictors, fading, plan.ridge),
                          Lanes(channels, 0), Lanes(channels, 1), Lanes(channels, 0)});
   }
 }

@@ -17,10 +17,12 @@ namespace mocapress::exact {
 
 class Blends {
  public:
-  static constexpr std::size_t kMostMemories = 3;
+  struct Plan {
+    std::span<const double> fadings;  // of each memory
+    double ridge;                     // how much the mean is trusted at first
+  };
 
-  // `memories`: how many pasts of different lengths to learn from, up to kMostMemories.
-  Blends(std::size_t channels, std::size_t predictors, std::size_t memories);
+  Blends(std::size_t channels, std::size_t predictors, const Plan& plan);
 
   // Of the predictions, only those from <= i < to make up the mean, which is trusted at first.
   double predict(std::size_t channel, std::span<const double> predictions, std::size_t from,
@@ -64,5 +66,8 @@ class Blends {
   Lanes values_;
   Lanes scales_;
 };
+
+inline constexpr std::array kOneFading = {0.94};
+inline constexpr Blends::Plan kOneBlend = {kOneFading, 1};  // of all lower levels
 
 }  // namespace mocapress::exact

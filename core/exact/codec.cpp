@@ -76,7 +76,8 @@ std::vector<Part> parts(const Clip& clip) {
 }  // namespace
 
 Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* learned,
-             std::vector<float>* seen) {
+             std::vector<float>* seen, std::size_t* early) {
+  if (early != nullptr) *early = 0;
   if (clip.level <= kFastLevels) return encode_fast(values, frames, clip, learned);
   RangeWriting side;
   const std::size_t count = clip.columns.size();
@@ -86,9 +87,11 @@ Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* 
     Model model(part.clip());
     model.show_network(seen);
     std::vector<double> row(part.count);
+    const std::size_t before = side.size();
     for (std::size_t f = 0; f < frames; ++f) {
       std::copy_n(values + f * count + part.from, part.count, row.data());
       model.code_frame(side, row.data(), cuts[f]);
+      if (early != nullptr && f + 1 == std::min(frames, kEarly)) *early += side.size() - before;
     }
     if (learned == nullptr) continue;
     Start own = model.learned();

@@ -39,17 +39,23 @@ struct Start {
 struct Clip {
   std::span<const Column> columns;
   std::span<const Coupling> couplings;
-  int level;  // 1 to 9
+  int level;  // 1 to kStrongest
   const Start& start;
 };
 
 // Codes `frames` x columns.size() values, row by row, as one chunk that needs no other. Where
 // `learned` is given, it is filled with what the coder knows in the end.
 //
-// Where `seen` is given, what the network of levels 7 to 9 sees of each number is added to it.
+// Where `seen` is given, what the network of levels from 7 on sees of each number is added to it.
+// Where `early` is given, it becomes about how many bytes the first kEarly frames take; 0 up to
+// level 5.
 Bytes encode(const double* values, std::size_t frames, const Clip& clip, Start* learned = nullptr,
-             std::vector<float>* seen = nullptr);
+             std::vector<float>* seen = nullptr, std::size_t* early = nullptr);
 
+inline constexpr std::size_t kEarly = 256;
+
+// At which clips are coded that level 9 was asked for; 9 itself is that of older files.
+inline constexpr int kStrongest = 10;
 inline constexpr int kUsualLevel = 5;  // that of files which name none, as in Python and the page
 
 inline constexpr std::size_t kTogether = 1024;  // columns of a part, at most

@@ -16,13 +16,13 @@
 namespace mocapress::exact {
 namespace {
 
-constexpr std::uint64_t kModel = 1, kOwnCouplings = 2, kLower = 4, kSkeleton = 8;
+constexpr std::uint64_t kModel = 1, kOwnCouplings = 2, kLower = 4, kSkeleton = 8, kAsked = 16;
 enum Role : std::uint8_t { kPredicted, kConstant, kCopy, kNoise, kRoles };
 constexpr int kTurns = 3, kLines = 7, kLineDigits = 32, kExponentStep = 8, kMostExponent = 1000;
 constexpr std::size_t kMostPlaces = 1 << 16, kMostTouching = 12;
 constexpr std::uint64_t kMostSources = 6, kMostTargets = 3;
 constexpr std::uint64_t kJointShapes = 243, kJointOnes = 9, kJointNumbers = 5, kJointBits = 11;
-constexpr std::uint64_t kKinds = 8, kMostLevel = 9;
+constexpr std::uint64_t kKinds = 8, kMostLevel = 9, kMostAbove = kMostLevel - kUsualLevel;
 constexpr std::size_t kNowhere = ~std::size_t{0};
 
 using Places = std::vector<std::size_t>;  // of columns; targets in the order of coding
@@ -214,15 +214,22 @@ std::vector<float> read_floats(Record& record) {
   return numbers;
 }
 
+// The level that a clip is coded at, or 0 where that of the parameter is; which one was asked for
+// is of no use here.
+int read_level(Record& record, std::uint64_t flags) {
+  const bool asked_for_more = flags >= kAsked;
+  if ((flags & kLower) == 0) return asked_for_more ? kUsualLevel : 0;
+  if (asked_for_more) fail("a level that is named twice");
+  const auto level = static_cast<int>(record.integer(10 * kMostLevel + 9) % 10);
+  return level == 0 ? kStrongest : level;
+}
+
 }  // namespace
 
 Header read_header(ByteView header, std::size_t columns) {
   Record record(header);
-  const std::uint64_t flags = record.integer(kModel + kOwnCouplings + kLower + kSkeleton);
-  // In tens, the level that was asked for.
-  const std::uint64_t levels = (flags & kLower) != 0 ? record.integer(10 * kMostLevel + 9) : 0;
-  const std::uint64_t level = levels % 10;
-  if ((flags & kLower) != 0 && level == 0) fail("a level that there is not");
+  const std::uint64_t flags = record.integer(kMostAbove * kAsked + kAsked - 1);
+  const int level = read_level(record, flags);
   const bool skeleton = (flags & kSkeleton) != 0, own = (flags & kOwnCouplings) != 0;
   if (skeleton ? columns != kSkeletonChannels : own) fail("channels of another skeleton");
   const auto roles = record.palette(columns, kTurns * kRoles - 1);
@@ -281,7 +288,7 @@ Header read_header(ByteView header, std::size_t columns) {
   std::ranges::copy(by_role[kNoise], std::back_inserter(made.coded));
   for (const auto c : made.coded) made.columns.push_back(all[c]);
   for (const auto& coupling : couplings) made.couplings.push_back(coupled(coupling, order));
-  made.level = static_cast<int>(level);
+  made.level = level;
   made.has_model = (flags & kModel) != 0;
   return made;
 }

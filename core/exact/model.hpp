@@ -38,7 +38,7 @@ inline constexpr double kFarthest = 20;         // in scales: an error beyond co
 inline constexpr double kRounding = 0.15;       // in steps: what rounding adds to the scale
 inline constexpr std::uint32_t kNoCut = 65512;  // its chance, in 1/65536
 // The first levels that have them.
-inline constexpr int kNetworkFrom = 7, kMemoriesFrom = 8, kMemoriesOfKnownFrom = 9;
+inline constexpr int kNetworkFrom = 7, kTunedFrom = kStrongest;
 
 class Model {
  public:
@@ -74,9 +74,8 @@ class Model {
       for (const auto target : coupling.targets) channels_[target].law = laws_.back().get();
     }
     last_ = std::make_unique<LastStage>(count_, slots());
-    if (clip.level >= kNetworkFrom) network_.emplace(count_);
-    const int memories_from = kinematics_ ? kMemoriesOfKnownFrom : kMemoriesFrom;
-    gather_blends(clip.level >= memories_from ? Blends::kMostMemories : 1);
+    if (clip.level >= kNetworkFrom) network_.emplace(count_, clip.level >= kTunedFrom);
+    gather_blends(blend_plan(kinematics_.has_value(), clip.level));
     // Longer chains come first, so that those that learn together are of one length.
     for (auto& expert : experts_) learners_.push_back(&expert);
     std::ranges::stable_sort(learners_, std::greater(),
@@ -157,7 +156,7 @@ class Model {
   }
 
   // Channels with equally many predictors are blended together.
-  void gather_blends(std::size_t memories) {
+  void gather_blends(const Blends::Plan& plan) {
     std::map<std::size_t, std::size_t> counts;
     for (auto& channel : channels_) {
       const std::size_t usual = channel.predictors.size();
@@ -168,7 +167,7 @@ class Model {
     }
     blends_.reserve(counts.size());
     for (const auto& [count, channels] : counts) {
-      blends_.emplace_back(channels, count, memories);
+      blends_.emplace_back(channels, count, plan);
       for (auto& channel : channels_) {
         if (count_predictors(channel) == count) channel.blends = &blends_.back();
       }
@@ -257,7 +256,8 @@ class Model {
     const double moved = blended + beside.moved;
     const double predicted =
         sane(frames_.level(c, 1) + (moved + beside.moved_again)) * channel.per_unit;
-    const double width = (beside.scale + kRounding * beside.step) * channel.per_unit;
+    const double wide = beside.scale + kRounding * beside.step;
+    const double width = wide * channel.per_unit;
     if (channel.turns) turned = channel.turns->code(side, predicted, width, number);
     const double coded = residual_.code(side, c, channel.line, predicted - turned, width, number);
     const double before = frames_.level(c, 1) * channel.per_unit;
@@ -270,6 +270,7 @@ class Model {
     if (beside.last) beside.last->see(c, error - blended);
     if (network_) {
       if (beside.last && seen_ != nullptr) network_->show((error - moved) / span, *seen_);
+      if (beside.last) network_->learn((error - (moved + beside.moved_again)) / wide);
       network_->see(c, (error - blended) / span, span);
     }
     spreads_.see(c, (error - moved) / beside.loose);

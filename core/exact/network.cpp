@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
-#include "exact/tables.hpp"
 #include "numbers/arithmetic.hpp"
 #include "numbers/vector_clones.hpp"
 
@@ -42,9 +40,8 @@ MOCAPRESS_IN_PLACE void layer(const Value* values,
 }
 
 MOCAPRESS_VECTOR_CLONES
-void run(const Value* inputs, std::int32_t* outputs) {
+void run(const Value* inputs, Value* second, std::int32_t* outputs) {
   Value first[kHidden];
-  Value second[kHidden];
   layer(inputs, kNetwork.first, kNetwork.first_biases, first);
   layer(first, kNetwork.second, kNetwork.second_biases, second);
   for (std::size_t i = 0; i < kOutputs; ++i) {
@@ -55,10 +52,11 @@ void run(const Value* inputs, std::int32_t* outputs) {
 
 }  // namespace
 
-Network::Network(std::size_t channels) : residuals_(channels + kBefore, 0) {
+Network::Network(std::size_t channels, bool tuned) : residuals_(channels + kBefore, 0) {
   static_assert(kInputs <= kNetworkInputs);
   for (auto& logs : logs_) logs = Lanes(channels, 0);
   for (auto& apart : apart_) apart.fill(Lanes(channels, 0));
+  if (tuned) tuning_.emplace();
 }
 
 void Network::begin() {
@@ -97,10 +95,27 @@ Network::Told Network::tell(std::size_t c, const Known& known) {
     const double scaled = inputs_[i] * (1 << kValueBits);
     inputs[i] = static_cast<Value>(scaled + (scaled < 0 ? -0.5 : 0.5));
   }
+  Value hidden[kHidden];
   std::int32_t outputs[kOutputs];
-  run(inputs, outputs);
+  run(inputs, hidden, outputs);
   constexpr double kOne = 1 << (kValueBits + kWeightBits);
-  return {cut(outputs[0] / kOne, kMostUnits), natural_exp(cut(outputs[1] / kOne, 2))};
+  double move = outputs[0] / kOne;
+  double scale = outputs[1] / kOne;
+  if (tuning_) {
+    const Tuning::Sums sums = tuning_->tell(features(hidden));
+    move += sums.move;
+    scale += sums.scale;
+  }
+  return {cut(move, kMostUnits), natural_exp(cut(scale, 2))};
+}
+
+std::array<double, kHidden + Network::kInputs + 1> Network::features(const Value* hidden) const {
+  std::array<double, kHidden + kInputs + 1> features;
+  static_assert(features.size() <= Tuning::kFeatures);
+  for (std::size_t i = 0; i < kHidden; ++i) features[i] = hidden[i] / double{1 << kValueBits};
+  std::ranges::copy(inputs_, features.begin() + kHidden);
+  features.back() = 1;
+  return features;
 }
 
 void Network::see(std::size_t c, double residual, double span) {

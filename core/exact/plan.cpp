@@ -92,6 +92,12 @@ bool knows_skeleton(std::span<const Column> columns, int level) {
          std::ranges::any_of(columns, [](const Column& column) { return column.place >= 0; });
 }
 
+Blends::Plan blend_plan(bool known, int level) {
+  static constexpr std::array kMemories = {0.94, 0.985, 0.998}, kStrong = {0.92, 0.985, 0.998};
+  if (level < (known ? 9 : 8)) return kOneBlend;
+  return level < kStrongest ? Blends::Plan{kMemories, 1} : Blends::Plan{kStrong, 10};
+}
+
 Plans plans(std::span<const Column> columns, std::span<const Coupling> couplings, int level) {
   const std::size_t channels = columns.size();
   Plans made;

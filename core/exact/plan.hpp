@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "exact/blend.hpp"
 #include "exact/codec.hpp"
 #include "exact/expert.hpp"
 #include "exact/limbs.hpp"
@@ -35,6 +36,9 @@ struct Plans {
     limbs.push_back(plan);
   }
 };
+
+// How predictors are blended; `known`: whether there are guesses.
+Blends::Plan blend_plan(bool known, int level);
 
 // Of the columns that are predicted.
 Plans plans(std::span<const Column> columns, std::span<const Coupling> couplings, int level);

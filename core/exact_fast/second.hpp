@@ -15,7 +15,7 @@ template <bool kLastStage>
 class Second {
  public:
   explicit Second(std::size_t channels)
-      : own_(channels), blends_(channels, 2, 1), last_(channels, {}) {}
+      : own_(channels), blends_(channels, 2, kOneBlend), last_(channels, {}) {}
 
   // A frame: begin, for every channel blend, moved_by_past and see, then learn.
   void begin(const Frames& frames) {

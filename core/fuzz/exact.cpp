@@ -20,7 +20,7 @@ using mocapress::fuzz::same_bits;
 
 namespace {
 
-constexpr int kLevels[] = {1, 2, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+constexpr int kLevels[] = {1, 2, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
 
 exact::Column column_of(Input& input, bool noise) {
   constexpr int kDigits[] = {0, 1, 4, 6, 15};

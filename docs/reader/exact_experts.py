@@ -167,9 +167,8 @@ def products(levels: Levels, sources: list[int]) -> list[Variable]:
 class Blend:
     """Blend: one move out of the predictions."""
 
-    def __init__(self, count: int, memories: int) -> None:
-        fadings = (0.94, 0.985, 0.998)[:memories]
-        self.chains = [Chain(count, fading, 1.0) for fading in fadings if count > 1]
+    def __init__(self, count: int, fadings: tuple[float, ...], ridge: float) -> None:
+        self.chains = [Chain(count, fading, ridge) for fading in fadings if count > 1]
         self.v = [1.0 for _ in fadings]
 
     def mix(self, moves: list[float], mean: float) -> float:

@@ -149,7 +149,7 @@ class Payload:
         self.own: list[Expert] = []
         if level >= SECOND_FROM:
             self.own = [own_expert(self.levels, c) for c in range(count)]
-        self.blends = [Blend(2, 1) for _ in self.own]
+        self.blends = [Blend(2, (0.94,), 1.0) for _ in self.own]
         self.last = [LastStage() for _ in range(count if level >= LAST_STAGE_FROM else 0)]
         self.weights, self.products = Shared(), dict[int, list[float]]()
 

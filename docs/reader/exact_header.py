@@ -62,11 +62,11 @@ class Header:
 
     def __init__(self, record: Record, count: int) -> None:
         flags = record.integer()
-        self.skeleton, self.learned = flags >> 3, flags & 1
-        self.level = record.integer() % 10 if flags & 4 else 0
+        self.skeleton, self.learned = flags >> 3 & 1, flags & 1
+        self.level = 5 if flags >> 4 else 0
         """Where it is not that of the parameters."""
-        if self.skeleton > 1:
-            raise CorruptError("a skeleton that this version does not have")
+        if flags & 4:
+            self.level = record.integer() % 10 or 10
         roles = palette(record, count)
         of_role = [[c for c in range(count) if roles[c] % 4 == role] for role in range(4)]
         coded = sorted(of_role[PREDICTED] + of_role[NOISE])

@@ -46,17 +46,38 @@ class Shared:
     def learn(self, products: dict[int, list[float]], channels: int) -> None:
         """Learn from the products of all channels that take part."""
         for i in range(13):
-            sums = [
-                total(products[c][i] for c in range(k, channels, 8) if c in products)
-                for k in range(8)
-            ]
-            self.weights[i] += 0.0002 * total(sums)
+            sums = by_eights([products[c][i] if c in products else 0.0 for c in range(channels)])
+            self.weights[i] += 0.0002 * sums
+
+
+class Tuning:
+    """Tuning: weights of what the network knows."""
+
+    def __init__(self) -> None:
+        self.moves, self.scales = [0.0] * 111, [0.0] * 111
+
+    def tell(self, known: list[float]) -> list[float]:
+        """Give the sums of what is known."""
+        self.known = known
+        return [
+            by_eights([w * y for w, y in zip(weights, known, strict=True)])
+            for weights in (self.moves, self.scales)
+        ]
+
+    def learn(self, error: float) -> None:
+        """Learn from an error in widths."""
+        rho = cut(error, -30.0, 30.0)
+        g = 5 * rho / (4 + rho * rho)
+        for weights, step in ((self.moves, 2e-4 * g), (self.scales, 5e-5 * (g * rho - 1))):
+            for i, y in enumerate(self.known):
+                weights[i] += step * y
 
 
 class Network:
     """Network: what it knows of the channels of a part."""
 
-    def __init__(self, channels: int) -> None:
+    def __init__(self, channels: int, *, tuned: bool) -> None:
+        self.tuning = Tuning() if tuned else None
         numbers = iter(whole_numbers("network_2"))
 
         def rows(count: int, width: int) -> list[list[int]]:
@@ -101,12 +122,25 @@ class Network:
             values = [min(max(value // 1024, 0), 4095) for value in sums]
         told = [256 * b + product(w, values) for w, b in zip(self.last, self.biases, strict=True)]
         told[0] += product(self.direct, inputs)
-        again = cut(told[0] / 2**18, -4.0, 4.0) * u
-        return again, scale * exp(cut(told[1] / 2**18, -2.0, 2.0))
+        outputs = [value / 2**18 for value in told]
+        if self.tuning:
+            tuned = self.tuning.tell([*(value / 256 for value in values), *z, 1.0])
+            outputs = [a + b for a, b in zip(outputs, tuned, strict=True)]
+        return cut(outputs[0], -4.0, 4.0) * u, scale * exp(cut(outputs[1], -2.0, 2.0))
+
+    def learn(self, error: float) -> None:
+        """Tune the outputs by an error in widths."""
+        if self.tuning:
+            self.tuning.learn(error)
 
     def see(self, c: int, error: float, u: float) -> None:
         """See e - P of a channel."""
         self.residuals[c], self.logs[c][0] = cut(error / u, -4.0, 4.0), ln(u)
+
+
+def by_eights(terms: list[float]) -> float:
+    """Sum each eighth term from the first eight on, then these sums."""
+    return total(total(terms[k::8]) for k in range(8))
 
 
 def product(a: list[int], b: list[int]) -> int:

@@ -106,17 +106,21 @@ class Spread:
         return activity
 
 
+Fadings = tuple[tuple[float, ...], float]
+"""Blend: λ of its chains, and r."""
+
+
 class Channel:
     """A channel: what is kept of it from frame to frame."""
 
     def __init__(
-        self, column: Column, told: Told | None, count: int, memories: int, chances: list[int]
+        self, column: Column, told: Told | None, count: int, blend: Fadings, chances: list[int]
     ) -> None:
-        """Take how many experts predict it, chains of its blend, and chances of its buckets."""
+        """Take how many experts predict it, λ and r of its blend, and chances of its buckets."""
         self.column, self.told, self.chances = column, told, chances
         self.joint = told.coupling.joint if told else None
         self.law = None if self.joint else told
-        self.blend, self.spread = Blend(count + (3 if told else 0), memories), Spread()
+        self.blend, self.spread = Blend(count + (3 if told else 0), *blend), Spread()
         self.stage = LastStage() if not told else None
         self.low = {0: 0.0, 1: -180.0, 2: 0.0}[column.turns]
         self.edges = [Bit() for _ in range(32)]
@@ -172,19 +176,23 @@ class Part:
         self.skeleton = Skeleton(places, self.levels) if known and level > 7 else None
         told = make_told(couplings, self.levels)
         polynomials = [(one.sources, one.targets) for one in couplings if one.kind == 0]
-        self.experts = make_experts(level, self.levels, places, self.skeleton, polynomials)
+        self.experts = make_experts(min(level, 9), self.levels, places, self.skeleton, polynomials)
         self.experts_of = [
             [one for one in self.experts if c in one.targets] for c in range(len(predicted))
         ]
         self.channels = []
-        memories = 3 if level >= (9 if self.skeleton else 8) else 1
+        blend: Fadings = ((0.94, 0.985, 0.998), 1.0)
+        if level == 10:
+            blend = ((0.92, 0.985, 0.998), 10.0)
+        elif level < (9 if self.skeleton else 8):
+            blend = ((0.94,), 1.0)
         for c, column in enumerate(predicted):
             chances = list(self.coding.slow)
-            channel = Channel(column, told.get(c), len(self.experts_of[c]), memories, chances)
+            channel = Channel(column, told.get(c), len(self.experts_of[c]), blend, chances)
             channel.begin(lists.get(column.place, []))
             self.channels.append(channel)
         self.shared, self.products = Shared(), dict[int, list[float]]()
-        self.network = Network(len(predicted)) if level >= 7 else None
+        self.network = Network(len(predicted), tuned=level == 10) if level >= 7 else None
         noise = [column for column in columns if column.noise]
         self.noises = [Noise(column.line, lists.get(column.place, [])) for column in noise]
 
@@ -249,6 +257,8 @@ class Part:
         if stage:
             self.products[c] = stage.learn(e - p, self.shared.weights)
         if self.network:
+            if stage:
+                self.network.learn((e - (m + n)) / (scale + 0.15 * step))
             self.network.see(c, e - p, u)
         if channel.spread.count == 0:
             size = ln(abs((e - m) / loose) + 1e-3)

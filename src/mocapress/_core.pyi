@@ -291,9 +291,11 @@ def encode_differences(differences: Annotated[NDArray[numpy.int64], dict(shape=(
 def decode_differences(coded: bytes, differences: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')]) -> None:
     """Fill ``differences``; ValueError where ``coded`` is not so many."""
 
-def exact_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 6), order='C', device='cpu', writable=False)], couplings: Sequence[tuple[int, Sequence[int], Sequence[int], Sequence[float]]], level: int, start: tuple[Sequence[float], Sequence[Sequence[float]]], learn: bool) -> tuple[bytes, tuple[list[float], list[list[float]]]]:
+def exact_encode(values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], plan: Annotated[NDArray[numpy.int32], dict(shape=(None, 6), order='C', device='cpu', writable=False)], couplings: Sequence[tuple[int, Sequence[int], Sequence[int], Sequence[float]]], level: int, start: tuple[Sequence[float], Sequence[Sequence[float]]], learn: bool) -> tuple[bytes, tuple[list[float], list[list[float]]], int]:
     """
     Code rows of values as a chunk; give what was learned, too, where ``learn``.
+
+    Last comes about how many bytes the first 256 rows take, where the level is above 5.
 
     A plan has line, digits, noise, exponent, turns and place of each column, a coupling
     kind, sources, targets and parameters: see core/exact/codec.hpp.

@@ -180,7 +180,7 @@ def test_couplings_travel_in_the_header(couplings: list[Coupling], numbers: list
     adjacent = Coupling(CouplingKind.POLYNOMIAL, (3, 4, 5, 6), (7, 8))
     roles = roles_with([*couplings, joint, adjacent])
     values = np.random.default_rng(1).normal(0, 20, (12, 12)).cumsum(axis=0)
-    payload, _ = _Coder(roles, 3, Start()).encode(values)
+    payload, _, _ = _Coder(roles, 3, Start()).encode(values)
     rows = np.empty_like(values)
     header = pack_header(roles, Told(), has_model=False)
     _core.exact_decode_chunk(header, payload, rows, len(rows), 3, b"")

@@ -30,9 +30,7 @@ DECIMALS, PRINTED32, DEGREES32 = 3, 5, 6
 @pytest.fixture(autouse=True)
 def _at_one_level(monkeypatch: pytest.MonkeyPatch) -> None:
     """Compare what one level makes of clips, also where a lower one would be smaller."""
-    monkeypatch.setattr(
-        "mocapress.codecs.exact.codec._smallest", lambda roles, level, _: (roles, level)
-    )
+    monkeypatch.setattr("mocapress.codecs.exact.codec._smallest", lambda way, *_: way)
 
 
 def clip_of(values: Floats, axes: str = "zyx") -> Clip:
@@ -120,7 +118,7 @@ def test_a_hinge_costs_little_more_than_one_angle() -> None:
     assert len(first.sources) == 1
     assert {*second.sources, *second.targets} == {0, 1, 2}
     dearest = max(coded(clip_of(clip.values[:, [c]])) for c in range(3))
-    assert coded(clip) < 1.65 * dearest
+    assert coded(clip) < 1.75 * dearest
 
 
 def test_a_joint_of_two_axes_costs_little_more_than_two_angles() -> None:
@@ -252,7 +250,7 @@ def test_a_column_has_no_more_predictors_than_there_is_room_for(
     couplings = [(0, [0, 1], [2], [])] * polynomials
     start: tuple[list[float], list[list[float]]] = ([], [[]] * 3)
     if fits:
-        payload, _ = _core.exact_encode(values, plan, couplings, 6, start, False)
+        payload, _, _ = _core.exact_encode(values, plan, couplings, 6, start, False)
         rows = np.empty_like(values)
         _core.exact_decode(payload, rows, plan, couplings, 6, start, True)
         assert rows.tobytes() == values.tobytes()

@@ -163,7 +163,7 @@ def restored(table: Table, places: Values) -> Values:
     numbers = np.ascontiguousarray(places[:, None])
     roles = find_roles(numbers, lambda _, __: [])
     header = pack_header(roles, Told(tables=[table], table_of=[1]), has_model=False)
-    payload, _ = _Coder(roles, 1, Start()).encode(numbers)
+    payload, _, _ = _Coder(roles, 1, Start()).encode(numbers)
     rows = np.empty_like(numbers)
     _core.exact_decode_chunk(header, payload, rows, len(rows), 1, b"")
     return rows[:, 0]

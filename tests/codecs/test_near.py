@@ -211,6 +211,34 @@ def test_a_finer_quality_has_smaller_errors(samples: Path) -> None:
         assert errors.max() <= 1.6 * part / 170 * size
 
 
+@pytest.mark.parametrize("effort", [1, 2, 3])
+def test_bounds_and_means_are_kept_by_all_efforts(samples: Path, effort: int) -> None:
+    """The first looks at 512 frames of the middle, so that its mean is another."""
+    clip = mp.read(samples / "cmu_01_01.amc")[:700]
+    errors = joint_errors(
+        clip, decoded_by(mp.codec(f"near:p=0.3cm,effort={effort}"), clip), 3 / CMU
+    )
+    assert errors.max() * CMU <= 1.6 * 0.3
+    assert errors.mean() * CMU == pytest.approx(0.1, rel=0.2 if effort == 1 else 0.03)
+
+
+def test_efforts_that_there_are_not_are_refused() -> None:
+    with pytest.raises(ParameterError, match="near:effort; expected 1 to 3; found 4"):
+        mp.codec("near:effort=4")
+
+
+def test_corrections_leave_alone_what_is_kept_anyway() -> None:
+    """Moving a number that the file keeps as it is would bring no joint back."""
+    clip = arm(64)
+    values = clip.values.copy()
+    values[::2, 9:] = np.nan
+    clip = clip.with_values(values)
+    decoded = decoded_by(mp.codec("near:max=0.02cm"), clip)
+    known = np.isfinite(values).all(axis=1)
+    errors = joint_errors(clip, decoded, 3)[known]
+    assert errors.max() <= 0.02
+
+
 def test_what_it_costs_falls_with_the_error(samples: Path) -> None:
     clip = mp.read(samples / "cmu_01_01.amc")[:400]
     sizes = [len(mp.compress(clip, f"near:p={p}cm")) for p in ("0.01", "0.1", "1")]
@@ -349,7 +377,8 @@ def turning(middle: float, *, whole_turns: bool) -> Clip:
 def test_angles_of_turned_joints_come_back_as_the_file_writes_them(clip: Clip) -> None:
     found = decoded_by(mp.codec(f"{CODEC},chunk=128"), clip)
     assert joint_errors(clip, found, 3).max() <= 0.1
-    assert np.abs(found.values - clip.values).max() < 3
+    # 0.1 cm are 1.9 degrees at 3 cm; angles that make good each other's errors may be off by more.
+    assert np.abs(found.values - clip.values).max() < 6
 
 
 def test_angles_that_leap_to_others_of_the_same_turn_cost_next_to_nothing() -> None:

@@ -117,6 +117,9 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_bytes.bin": (bytes(range(256)) * 3, "exact", {}),
     "v1_exact.amc": (WALK_AMC, "exact:chunk=80", {}),
     "v1_exact_strong.amc": (WALK_LF, "exact:level=9,chunk=100", {}),
+    "v1_exact_tuned.bvh": (WALK_BVH, "exact:level=9,chunk=100", {}),
+    # Level 9 is asked for, and 5 is smaller.
+    "v1_exact_still.bvh": ((BVH + 240 * "0 90 0 0 0 0 0 0 0\n").encode(), "exact:level=9", {}),
     "v1_exact_fast.bvh": (WALK_BVH, "exact:level=1,chunk=80", {}),
     "v1_exact_cut.bvh": (WALK_BVH[:-700], "exact:level=2,chunk=80", {}),
     "v1_lossy.amc": (WALK_LF, "diffma:bits=7,chunk=100", {}),

@@ -78,7 +78,7 @@ def check(
         )
         for c, one in enumerate(told)
     ]
-    payload, _ = _core.exact_encode(
+    payload, _, _ = _core.exact_encode(
         values,
         np.array(plan, dtype=np.int32),
         [(one.kind, one.sources, one.targets, []) for one in couplings],

@@ -27,8 +27,11 @@ def coded(
     clip: Clip, name: str, index: int, codec: Codec, encoded: Encoded, model: Model | None
 ) -> tuple[StreamHead, list[CodedChunk]]:
     """Give what a file holds of the first stream of a clip: its stream ``index``, ``name``."""
+    left_out = codec.left_out()
+    named = {key: value for key, value in codecs.parameters(codec).items() if key not in left_out}
     head = replace(
-        stream_head(name, clip.main, codec.as_stored(), frames=clip.frames),
+        stream_head(name, clip.main, codec, frames=clip.frames),
+        codec=CodecSpec(codec.id, named),
         model=model.digest if model and encoded.uses_model else b"",
         header=encoded.header,
     )

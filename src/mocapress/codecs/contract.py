@@ -159,12 +159,12 @@ class Codec(ABC):
     """The parameter, a text, that takes what is given as ``name=value`` with names that no other
     parameter has; none for a codec that refuses them."""
 
-    def as_stored(self) -> "Codec":
-        """Give the codec whose parameters a file names, where the codec header says the rest."""
-        return self
+    def left_out(self) -> set[str]:
+        """Name the parameters that a file need not name: its codec header does, or all is usual."""
+        return set()
 
     def as_told(self, header: bytes) -> "Codec":
-        """Give the codec that ``as_stored`` was made of, from its header."""
+        """Give the codec as it was asked for, from the codec header."""
         return self
 
     def for_model(self, model: "Model | None") -> "Codec":

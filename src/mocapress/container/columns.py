@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from mocapress.container import limits
 from mocapress.formats.number_formats import read_format, record_of
-from mocapress.motion.clip import Column
 from mocapress.motion.columns import numbered_columns
 from mocapress.motion.skeleton import Skeleton
+from mocapress.motion.stream import Column
 from mocapress.records import Reader, Writer
 
 _SKELETON, _BONES, _ONE_BY_ONE, _NUMBERED = range(4)

@@ -10,9 +10,9 @@ from mocapress.container import limits
 from mocapress.container.columns import Bone, Columns, read_columns, write_columns
 from mocapress.container.packing import pack, stored, unpack
 from mocapress.container.skeletons import read_skeleton, write_skeleton
-from mocapress.motion.clip import Column
 from mocapress.motion.frame_time import FrameTime
 from mocapress.motion.skeleton import Skeleton
+from mocapress.motion.stream import Column
 from mocapress.records import Reader, Writer
 
 CHANNELS = "channels"

@@ -15,9 +15,9 @@ from mocapress.formats.number_formats import to_state
 from mocapress.formats.problems import Problem
 from mocapress.formats.rows import Body
 from mocapress.motion import Clip, Skeleton
-from mocapress.motion.clip import Column
 from mocapress.motion.convert import to_amc_clip
 from mocapress.motion.frame_time import FrameTime, short_decimal
+from mocapress.motion.stream import Column
 
 _KEYWORD = re.compile(rb"(?:^|[\r\n])[ \t]*:(fully-specified|degrees|radians)\b", re.IGNORECASE)
 

@@ -14,10 +14,10 @@ from mocapress.formats.number_formats import to_state
 from mocapress.formats.problems import Problem
 from mocapress.formats.rows import Body
 from mocapress.motion import Clip, Joint, Skeleton
-from mocapress.motion.clip import Column
 from mocapress.motion.convert import to_bvh_clip
 from mocapress.motion.frame_time import decimal_seconds
 from mocapress.motion.skeleton import Vec3
+from mocapress.motion.stream import Column
 
 # Comments may stand before it.
 _KEYWORD = re.compile(rb"(?:(?:#|//)[^\r\n]*+\s*+)*+HIERARCHY\b", re.IGNORECASE)

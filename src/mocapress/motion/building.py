@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mocapress.errors import ParameterError
-from mocapress.motion.clip import Clip, Column, Stream
+from mocapress.motion.clip import Clip
 from mocapress.motion.columns import named_columns, skeleton_columns
 from mocapress.motion.convert import zyx_degrees
 from mocapress.motion.frame_time import FrameTime, of_rate
 from mocapress.motion.kinematics import Array
 from mocapress.motion.markers import POINTS
 from mocapress.motion.skeleton import Joint, Skeleton
+from mocapress.motion.stream import Column, Stream
 
 if TYPE_CHECKING:
     import pandas as pd

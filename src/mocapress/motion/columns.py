@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 
 from mocapress import _core
 from mocapress.errors import FormatError
-from mocapress.motion.clip import Column
 from mocapress.motion.skeleton import Skeleton
+from mocapress.motion.stream import Column
 
 
 def skeleton_columns(skeleton: Skeleton) -> tuple[Column, ...]:

@@ -7,10 +7,11 @@ from math import tau
 import numpy as np
 
 from mocapress.errors import ParameterError
-from mocapress.motion.clip import Clip, Column
+from mocapress.motion.clip import Clip
 from mocapress.motion.kinematics import Array, positions
 from mocapress.motion.lengths import bone_drift, bones
 from mocapress.motion.markers import POINTS, markers
+from mocapress.motion.stream import Column
 
 _TURN = {"deg": 360.0, "rad": tau}
 """A whole turn by unit."""

@@ -11,11 +11,12 @@ from fractions import Fraction
 import numpy as np
 
 from mocapress.errors import ParameterError, UnsupportedError
-from mocapress.motion.clip import Clip, Column, Stream
+from mocapress.motion.clip import Clip
 from mocapress.motion.convert import with_rate
 from mocapress.motion.frame_time import of_rate
 from mocapress.motion.kinematics import Array
 from mocapress.motion.skeleton import Joint, Skeleton, Vec3, near
+from mocapress.motion.stream import Column, Stream
 
 _SIDES = (
     re.compile("left|right"),

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapress.errors import UnsupportedError
-from mocapress.motion.clip import Clip, Column, Stream
+from mocapress.motion.clip import Clip
 from mocapress.motion.frame_time import FrameTime
 from mocapress.motion.kinematics import positions
+from mocapress.motion.stream import Column, Stream
 
 POINTS, RESIDUALS, CAMERAS, ANALOG, ROTATIONS = (
     "points",

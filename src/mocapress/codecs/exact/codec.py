@@ -30,20 +30,24 @@ from mocapress.errors import CorruptError, ParameterError
 from mocapress.motion import Column, Skeleton, Stream
 
 STRONGEST_LEVEL: Final = 9
-_LEVELS_WITHOUT_MODELS = 5
+_STRONGEST_CODED = 10
+"""What level 9 is coded at; the coder's 9 is that of older files."""
+_FAST = 5
+"""Levels up to this one take no models, and do not tell what the first frames take."""
 _MOST_FRAMES = 1 << 20
-_FAST_LEVELS = 2
+_USUAL_CHUNK = 512
+_UNCOUPLED = 2
 """Up to this level couplings are not looked for: they have no use for them."""
 _TRIED = 256
-"""Frames on which lower levels are tried, too."""
-_OTHERS = (5, 4, 3, 2, 1)
-"""Lower levels that are always tried."""
+"""Frames on which lower levels are tried, too; as in core/exact/codec.hpp."""
+_OTHERS = {5, 4, 3, 2, 1}
+"""Lower levels that are tried, beside the next one below."""
 _SHORT = 128
 """Up to so many frames all lower levels are tried."""
-_NEAR = 1.015
-"""Other levels below are tried only where these come so near."""
-_SURE = 0.997
-"""How much smaller a lower level must be where there are more frames than are tried."""
+_NEAR = 1.0025
+"""Lower levels that come so near with these frames are tried with all frames."""
+_MOST_NEAR = 2
+"""So many of them, at most."""
 _TELLING = 2
 """Laws of a skeleton that tell that columns without names are its channels."""
 
@@ -57,7 +61,7 @@ class Exact(Codec):
 
     level: int = USUAL_LEVEL
     """1, the fastest, to 9, the strongest."""
-    chunk: int = 512
+    chunk: int = _USUAL_CHUNK
     """Frames that are decoded together; every chunk learns anew."""
 
     def __post_init__(self) -> None:
@@ -66,9 +70,9 @@ class Exact(Codec):
             if not isinstance(value, int) or not 1 <= value <= most:
                 raise ParameterError(f"exact:{name}", expected=f"1 to {most}", found=repr(value))
 
-    def as_stored(self) -> "Exact":
-        """Give the codec at the usual level: the header names another, in a byte."""
-        return replace(self, level=USUAL_LEVEL)
+    def left_out(self) -> set[str]:
+        """Name the level, which the codec header names in a byte, and the usual chunk."""
+        return {"level", "chunk"} if self.chunk == _USUAL_CHUNK else {"level"}
 
     def as_told(self, header: bytes) -> "Exact":
         """Give the codec at the level that was asked for, if the header names one."""
@@ -82,7 +86,7 @@ class Exact(Codec):
     @property
     def learns(self) -> bool:
         """Whether models are of use at the level."""
-        return self.level > _LEVELS_WITHOUT_MODELS
+        return self.level > _FAST
 
     def train(self, streams: Iterable[Stream]) -> Model:
         """Learn what to begin with: each stream is coded as if it went on from the last.
@@ -94,8 +98,8 @@ class Exact(Codec):
             if stream.frames == 0:
                 continue
             _, numbers, _ = Told.find(stream.values)
-            coder = _Coder(_roles(numbers, stream.columns, self.level), self.level, start)
-            _, learned = coder.encode(numbers, learn=True)
+            coder = _Coder(_roles(numbers, stream.columns, self.level), self._coded, start)
+            _, learned, _ = coder.encode(numbers, learn=True)
             start.take(coder.columns, learned)
         return model_of(self.id, self.level, start)
 
@@ -118,21 +122,24 @@ class Exact(Codec):
         if stream.frames == 0:
             return Encoded(b"", ())
         told, numbers, masks = Told.find(stream.values)
-        roles, level = _roles(numbers, stream.columns, self.level), self.level
+        roles = _roles(numbers, stream.columns, self.level)
+        way = _Way.of(numbers, self, roles, self._coded, start_of(model))
         if model is None:
-            roles, level = _smallest(roles, level, numbers)
-        coder = _Coder(roles, level, start_of(model))
-
-        def coded(first: int) -> Chunk:
-            rows = numbers[first : first + self.chunk]
-            own = [mask[first : first + self.chunk] for mask in masks]
-            return Chunk(first, len(rows), told.pack(coder.encode(rows)[0], own))
-
-        chunks = each(coded, range(0, stream.frames, self.chunk))
+            way = _smallest(way, numbers, self)
+        chunks = []
+        for place, payload in enumerate(way.payloads):
+            rows = slice(place * self.chunk, (place + 1) * self.chunk)
+            own = [mask[rows] for mask in masks]
+            chunks.append(Chunk(rows.start, len(numbers[rows]), told.pack(payload, own)))
         header = pack_header(
-            roles, told, has_model=model is not None, level=level, asked=self.level
+            way.roles, told, has_model=model is not None, level=way.level, asked=self.level
         )
         return Encoded(header, tuple(chunks))
+
+    @property
+    def _coded(self) -> int:
+        """The coder's level."""
+        return _STRONGEST_CODED if self.level == STRONGEST_LEVEL else self.level
 
     def decode(
         self,
@@ -193,7 +200,7 @@ class Exact(Codec):
 
 
 def _roles(values: NDArray[np.float64], columns: Sequence[Column], level: int) -> Roles:
-    if level <= _FAST_LEVELS:
+    if level <= _UNCOUPLED:
         return find_roles(values, lambda _, __: [])
     joints = assumed(columns)
     found = find_roles(
@@ -207,32 +214,60 @@ def _roles(values: NDArray[np.float64], columns: Sequence[Column], level: int) -
     return replace(found, skeleton=NONE)
 
 
-def _smallest(roles: Roles, level: int, values: NDArray[np.float64]) -> tuple[Roles, int]:
-    """Give how a clip is coded in the fewest bytes, as far as its first frames tell.
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """A way to code a clip, and what comes of it."""
 
-    More predictors are not better ones for every clip, least of all for short ones. Tried are the
-    level, the fast ones, and the next one below; of short clips all.
+    roles: Roles
+    level: int
+    payloads: list[bytes]
+    size: int
+    """Bytes, with the header."""
+    early: int
+    """About how many of them the first frames take that are tried; up to level 5 all."""
+
+    @classmethod
+    def of(
+        cls,
+        numbers: NDArray[np.float64],
+        codec: Exact,
+        roles: Roles,
+        level: int,
+        start: Start,
+    ) -> "_Way":
+        """Code a clip as a codec asks for."""
+        coder, size = _Coder(roles, level, start), codec.chunk
+        firsts = range(0, len(numbers), size)
+        coded = each(lambda first: coder.encode(numbers[first : first + size]), firsts)
+        payloads = [payload for payload, _, _ in coded]
+        header = pack_header(roles, Told(), has_model=False, level=level, asked=codec.level)
+        payload = sum(map(len, payloads))
+        return cls(
+            roles, level, payloads, len(header) + payload, len(header) + (coded[0][2] or payload)
+        )
+
+
+def _smallest(way: _Way, numbers: NDArray[np.float64], codec: Exact) -> _Way:
+    """Give how a clip is coded in the fewest bytes: as it is, or at a lower level.
+
+    More predictors are not better ones for every clip, least of all for short ones. Tried are, on
+    the first frames, the fast levels and the next one below, of short clips all; then those that
+    come near, on all frames.
     """
-    rows = values[:_TRIED]
+    rows, asked = numbers[: min(_TRIED, codec.chunk)], codec.level
 
-    def at(own: int) -> Roles:
-        return replace(roles, couplings=()) if own <= _FAST_LEVELS else roles
+    def at(level: int, tried: NDArray[np.float64]) -> _Way:
+        roles = replace(way.roles, couplings=()) if level <= _UNCOUPLED else way.roles
+        return _Way.of(tried, codec, roles, level, Start())
 
-    def size(own: int) -> float:
-        header = pack_header(at(own), Told(), has_model=False, level=own, asked=level)
-        found = len(header) + len(_Coder(at(own), own, Start()).encode(rows)[0])
-        return found / _SURE if own < level and len(rows) < len(values) else found
-
-    lower = range(level - 1, 0, -1) if len(values) <= _SHORT else _OTHERS
-    tried = [level, *(other for other in lower if other < level)]
-    sizes = dict(zip(tried, each(size, tried), strict=True))
-    # Where the skeleton is not known, the two strongest code alike.
-    below = level - 2 if level == STRONGEST_LEVEL and roles.skeleton == NONE else level - 1
-    others = min((sizes[other] for other in tried[1:]), default=0.0)
-    if below > _OTHERS[0] and below not in sizes and others < _NEAR * sizes[level]:
-        sizes[below] = size(below)
-    best = min(sizes, key=lambda own: (sizes[own], -own))
-    return at(best), best
+    lower = range(1, asked) if len(numbers) <= _SHORT else _OTHERS | {asked - 1}
+    tried = each(lambda level: at(level, rows), sorted(n for n in lower if 0 < n < asked))
+    if tried and len(rows) < len(numbers):
+        first = at(way.level, rows).size if asked <= _FAST else way.early
+        near = [one for one in tried if one.size <= _NEAR * first]
+        near.sort(key=lambda one: one.size)
+        tried = [at(one.level, numbers) for one in near[:_MOST_NEAR]]
+    return min([way, *tried], key=lambda one: (one.size, -one.level))
 
 
 class _Coder:
@@ -246,9 +281,11 @@ class _Coder:
         self._couplings = roles.coupled(self.columns)
         self._start = start.of(self.columns)
 
-    def encode(self, rows: NDArray[np.float64], *, learn: bool = False) -> tuple[bytes, Learned]:
-        """Code rows of all columns of the clip, (F, C)."""
+    def encode(
+        self, rows: NDArray[np.float64], *, learn: bool = False
+    ) -> tuple[bytes, Learned, int]:
+        """Code rows of all columns of the clip, (F, C): as ``_core.exact_encode`` gives it."""
         if not self.columns:
-            return b"", ([], [])
+            return b"", ([], []), 0
         own = np.ascontiguousarray(rows[:, self.columns])
         return _core.exact_encode(own, self._plan, self._couplings, self._level, self._start, learn)

@@ -15,7 +15,7 @@ from mocapress.codecs.palette import indexed, write_indices, write_palette
 from mocapress.errors import CorruptError
 from mocapress.records import Reader, Writer
 
-_MODEL, _OWN_COUPLINGS, _LEVEL, _SKELETON = 1, 2, 4, 8
+_MODEL, _OWN_COUPLINGS, _LEVEL, _SKELETON, _ASKED = 1, 2, 4, 8, 16
 _LINE_DIGITS = 32
 USUAL_LEVEL: Final = 5
 """Which a header need not name; as in core/exact/codec.hpp and viewer/mcz/decoding.js."""
@@ -26,15 +26,16 @@ def pack_header(
 ) -> bytes:
     """Make the header of a clip with these roles, coded with a model or without.
 
-    ``asked`` is the level that was asked for.
+    ``asked`` is the level that was asked for, ``level`` that of the coder, which has ten.
     """
     own = roles.skeleton != NONE and set(roles.couplings) <= set(OWN_COUPLINGS)
     writer = Writer()
     flags = _MODEL * has_model + _OWN_COUPLINGS * own + _SKELETON * roles.skeleton
-    names_level = (asked, level) != (USUAL_LEVEL, USUAL_LEVEL)
-    writer.integer(flags + _LEVEL * names_level)
-    if names_level:
-        writer.integer(10 * asked + level)
+    if level == USUAL_LEVEL and asked >= USUAL_LEVEL:
+        writer.integer(flags + _ASKED * (asked - USUAL_LEVEL))
+    else:
+        writer.integer(flags + _LEVEL)
+        writer.integer(10 * asked + level % 10)
     codes = zip(roles.roles, roles.turns, strict=True)
     write_palette(writer, [role + len(Role) * turns for role, turns in codes])
     lines = [roles.lines[c] for c in _moving(roles.roles)]
@@ -56,7 +57,9 @@ def asked_level(header: bytes) -> int:
     """Give the level that was asked for, if a header names one; otherwise 0."""
     reader = Reader(header, "exact header")
     try:
-        return reader.integer(99) // 10 if reader.integer() & _LEVEL else 0
+        flags = reader.integer()
+        above = flags // _ASKED
+        return reader.integer(99) // 10 if flags & _LEVEL else above and USUAL_LEVEL + above
     except CorruptError:
         return 0  # which reading the header tells of
 

@@ -26,6 +26,7 @@ from mocapress.codecs.near.figure import figure_of
 from mocapress.codecs.near.goal import Goal, goal_of
 from mocapress.codecs.near.header import unpack_errors
 from mocapress.codecs.near.parts import amounts, joints_of_parts
+from mocapress.codecs.near.search import EFFORTS, encode
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.units import amount
@@ -63,6 +64,9 @@ class Near(Codec):
     """Largest error of any value, in the unit of its channel; instead of all others."""
     chunk: int = 4096
     """Frames that are decoded together."""
+    effort: int = 2
+    """How long to search: 1 looks at a part of the clip, so that the mean is not quite what was
+    asked for; 3 tries more and keeps the smallest. Bounds are kept by all."""
     parts: str = ""
     """Largest errors of joints and parts of the body that have their own: ``feet=0.02cm,head=1mm``.
     """
@@ -80,6 +84,8 @@ class Near(Codec):
             raise ParameterError("near:p", expected="neither max nor mean beside it")
         if not isinstance(self.quality, int) or self.quality not in _QUALITIES:
             raise ParameterError("near:quality", expected="1 to 9", found=repr(self.quality))
+        if not isinstance(self.effort, int) or self.effort not in EFFORTS:
+            raise ParameterError("near:effort", expected="1 to 3", found=repr(self.effort))
         if not 0 <= self.rate < inf:
             raise ParameterError("near:rate", expected="kB/s above 0", found=repr(self.rate))
         if self.rate and (self.max or self.mean or self.p or self.parts or self.max_error < inf):
@@ -142,7 +148,8 @@ class Near(Codec):
             goal = replace(goal, most=inf)
             seconds = stream.frames * float(stream.frame_time or 1 / _ASSUMED_RATE)
             budget = 1000 * self.rate * seconds
-        return Encoder(goal, self.max_error, self.chunk, stream, skeleton, budget).encode()
+        encoder = Encoder(goal, self.max_error, self.chunk, stream, skeleton, budget)
+        return encode(encoder, self.effort)
 
     def decode(
         self,

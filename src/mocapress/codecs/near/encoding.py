@@ -1,7 +1,6 @@
 """The encoder of ``near``: from a goal to steps and chunks."""
 
 from math import inf, log, log2
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,59 +12,34 @@ from mocapress.codecs.near.figure import figure_of, tree_of
 from mocapress.codecs.near.goal import MEAN_OF_MOST, Goal, Measure
 from mocapress.codecs.near.header import COARSE, STEPS_PER_OCTAVE, joints_of, pack_header
 from mocapress.codecs.near.turning import Turning, is_known, known_turnings, nearest, turnings_of
-from mocapress.errors import ParameterError, VerificationError
+from mocapress.errors import VerificationError
 from mocapress.motion import Skeleton, Stream
 
 _MOST_STEP = 4096
-_SCALE_OF_MEAN = 2.5
+SCALE_OF_MEAN = 2.5
 """Where the search for a mean begins; 5.5 at coarse ones."""
-_TRIES = 7
-_NEAR_ENOUGH = 0.01
-_MOST_COARSER = 0.3
-"""Logarithm of by how much a scale may grow where bounds have made errors smaller."""
 _INNER, _NEXT, _OUTER = 1.05, 1.15, 1.5
 """Means of joints may be so many times that of all; of those without further joints the last, of
 those that such a joint follows the one before."""
+_SIDES = {"foot": 1.12, "wrist": 1.08, "hand": 1.28, "thumb": 1.4}
+_SHARES = {"upperneck": 1.05, "head": 1.32} | {f"{s}{j}": _SIDES[j] for s in "lr" for j in _SIDES}
+"""The same of joints of the known figure, of which ACL's means are smaller than that."""
 _WEIGHTS = {"upperneck": 2.0, "head": 1.5} | {
     side + joint: weight
     for side in "lr"
     for joint, weight in (("humerus", 1.6), ("radius", 1.4), ("foot", 1.7))
 }
 """Of joints of the known figure, of which the means would otherwise be above that."""
-_EVEN_ENOUGH = 1.02
-_MOST_TRIES = 12
-_FULL_ENOUGH, _AIM = 0.97, 0.985
-"""Of a budget of bytes: what is near enough, and what is tried next."""
-_HASTE = 2.0
 _SAMPLE = 256
 """Frames by which channels are weighed."""
-_COARSE = 4e-3
-"""Of the figure's size: at coarser scales long spans are worth more than early predictions; for the
-known figure, of which predictions are known at once, from the second start on."""
-_STARTS = (1.6e-4, 2.2e-3)
-"""Of the figure's size: scales from which the next of the learned starts is taken."""
+_COARSE = 1e-3
+"""Of the figure's size: at coarser means long spans are worth more than early predictions; for the
+known figure, of which predictions are known at once, at all."""
+_STARTS = (1.2e-4, 1.3e-3)
+"""Of the figure's size: means from which the next of the learned starts is taken."""
+_SCALE_OF_ANY_MEAN = 3.0
 _RATE, _COARSE_RATE = 0.12, 0.2
 """What a bit is worth, in squares of the scale; the latter from the third start on."""
-
-
-def _size(chunk: Chunk) -> int:
-    return len(chunk.payload)
-
-
-class _Try(NamedTuple):
-    """A scale and weights of points, and what came of them."""
-
-    off: float
-    """Logarithm of the mean error beside the goal."""
-    excess: float
-    """How many times its share the mean of the worst point is."""
-    scale: float
-    weights: NDArray[np.float64]
-
-    @property
-    def lack(self) -> float:
-        """Give by how much it is not good enough; a mean that is off counts ten times."""
-        return 10 * max(abs(self.off) - _NEAR_ENOUGH, 0) + max(self.excess - _EVEN_ENOUGH, 0)
 
 
 class Encoder:
@@ -104,8 +78,12 @@ class Encoder:
         known = turns and self.parts.min(initial=1) >= 1  # its steps are too coarse for closer ones
         self.turn(known=known and is_known(self.measure, stream.columns, self.values), orders=turns)
         if self.known and skeleton is not None:
-            usual = [_WEIGHTS.get(joint.name, 1.0) for joint in skeleton.joints]
-            self._weigh(self.weights * np.array(usual))
+            names = [joint.name for joint in skeleton.joints]
+            self.shares = np.array(
+                [_SHARES.get(*each) for each in zip(names, self.shares, strict=True)]
+            )
+            usual = [_WEIGHTS.get(name, 1.0) for name in names]
+            self.weigh(self.weights * np.array(usual))
 
     def turn(self, *, known: bool, orders: bool) -> None:
         """Let curves turn as the known figure's do, or, by `orders`, as is best for each joint."""
@@ -114,18 +92,20 @@ class Encoder:
         if known:
             self.turnings = nearest(self.measure, self.values, known_turnings())
         elif orders:
-            scale = self.goal.mean * _SCALE_OF_MEAN
+            scale = self.goal.mean * SCALE_OF_MEAN
             self.turnings = turnings_of(self.measure, self.columns, self.values, scale)
         self.curves = _core.near_turned_measure(self.measure.core, self.turnings)
         self.exponents = self._levers()
 
-    def encode(self) -> Encoded:
-        """Give header and chunks; every bound was checked on what they decode to."""
-        frames, channels = self.values.shape
-        if not frames or not channels:
-            return Encoded(self._header(1.0, (0.0, 0.0)), self._empty())
-        scale = self._scale() if self.budget == inf else self._scale_of_budget()
-        scale, payloads, errors = self._bounded(scale)
+    def encoded(self, scale: float, chunks: list[Chunk], errors: NDArray[np.float64]) -> Encoded:
+        """Give header and chunks; every bound is checked on what they decode to.
+
+        Raises
+        ------
+        VerificationError
+            When an error is larger than was asked for.
+
+        """
         largest = errors.max(axis=0, initial=0.0)
         for most, found in zip(self.most, largest, strict=True):
             if found > most:
@@ -134,35 +114,18 @@ class Encoder:
                     expected=f"errors up to {most:g}",
                     found=f"{found:g}",
                 )
-        header = self._header(scale, (float(errors.mean()), float(largest.max())))
-        return Encoded(header, tuple(payloads))
+        header = self.header(scale, (float(errors.mean()), float(largest.max())))
+        return Encoded(header, tuple(chunks))
 
-    def _bounded(self, scale: float) -> tuple[float, list[Chunk], NDArray[np.float64]]:
-        """Code within the bounds; give the scale, the chunks and their errors.
-
-        Bounds may make the mean smaller than was asked for. Then a coarser scale may do.
-        """
-        chunks, errors = self._chunks(scale, self.most)
-        off = self._off(errors)
-        if self.budget < inf or not -inf < off < -_NEAR_ENOUGH:
-            return scale, chunks, errors
-        coarser = scale * float(np.exp(min(-off, _MOST_COARSER)))
-        others, theirs = self._chunks(coarser, self.most)
-        smaller = sum(map(_size, others)) < sum(map(_size, chunks))
-        if smaller and self._off(theirs) <= _NEAR_ENOUGH:
-            return coarser, others, theirs
-        return scale, chunks, errors
-
-    def _empty(self) -> tuple[Chunk, ...]:
-        """Chunks of frames without channels."""
-        return tuple(
-            Chunk(
-                first,
-                min(self.chunk, len(self.values) - first),
-                self._payload(first, 1.0, self.most)[0],
-            )
-            for first in range(0, len(self.values), self.chunk)
-        )
+    def nothing(self) -> Encoded:
+        """Give header and chunks of frames without channels."""
+        frames = len(self.values)
+        chunks = []
+        for first in range(0, frames, self.chunk):
+            stop = min(first + self.chunk, frames)
+            payload = self._payload(first, stop, 1.0, self.most)[0]
+            chunks.append(Chunk(first, stop - first, payload))
+        return Encoded(self.header(1.0, (0.0, 0.0)), tuple(chunks))
 
     def _levers(self) -> NDArray[np.int64]:
         """Give what each channel's step is coarser than the scale, (C,) in 64ths of an octave."""
@@ -201,17 +164,18 @@ class Encoder:
             parts[joint] = most / usual
         return parts
 
-    def _weigh(self, weights: NDArray[np.float64]) -> None:
+    def weigh(self, weights: NDArray[np.float64]) -> None:
+        """Let errors of points count by these weights, (P,)."""
         self.weights = weights * ((self.parts**-2).mean() / weights.mean())
         self.exponents = self._levers()
 
-    def _excess(self, errors: NDArray[np.float64]) -> NDArray[np.float64]:
+    def excess(self, errors: NDArray[np.float64]) -> NDArray[np.float64]:
         """Give how many times its share the mean of each point is, (P,)."""
         means = errors.mean(axis=0)
         excess: NDArray[np.float64] = means / (self.shares * max(means.mean(), 1e-300))
         return excess
 
-    def _off(self, errors: NDArray[np.float64]) -> float:
+    def off(self, errors: NDArray[np.float64]) -> float:
         """Give the logarithm of the mean error beside the goal."""
         mean = float((errors if self.goal.is_mean_asked else errors / self.parts).mean())
         return log(mean / self.goal.mean) if mean > 0 else -inf
@@ -224,22 +188,31 @@ class Encoder:
         high = _MOST_STEP - (_MOST_STEP - base) % COARSE
         return [int(each) for each in np.clip(base + self.exponents, low, high)]
 
+    def _part(self, scale: float) -> float:
+        """Give the mean error as a part of the figure's size: the goal's, or about what it will be.
+
+        What hangs on it does not change while a scale is searched for a mean.
+        """
+        mean = self.goal.mean if self.budget == inf else scale / _SCALE_OF_ANY_MEAN
+        return mean / self.goal.size
+
     def _knot(self, scale: float) -> int:
         """Give the step of knots, in eighths."""
-        return 6 if scale / self.goal.size < 2e-4 else 4
+        return 6 if self._part(scale) < _STARTS[0] else 4
 
     def _start(self, scale: float) -> int:
         """Give the learned start that is nearest, from 1 on; 0 where the scale says nothing."""
         if not self.starts:
             return 0
-        return 1 + sum(scale / self.goal.size >= each for each in _STARTS)
+        return 1 + sum(self._part(scale) >= each for each in _STARTS)
 
     def _is_coarse(self, scale: float) -> bool:
-        return self.starts and scale / self.goal.size >= _STARTS[1]
+        return self.starts and self._part(scale) >= _STARTS[1]
 
-    def _header(self, scale: float, errors: tuple[float, float]) -> bytes:
+    def header(self, scale: float, errors: tuple[float, float]) -> bytes:
+        """Give the codec header for a scale and mean and largest error."""
         steps = self._steps(scale)
-        early = scale / self.goal.size < (_STARTS[0] if self.known else _COARSE)
+        early = not self.known and self._part(scale) < _COARSE
         return pack_header(
             self.goal.in_space,
             early,
@@ -254,81 +227,35 @@ class Encoder:
         )
 
     def _payload(
-        self, first: int, scale: float, most: NDArray[np.float64]
+        self, first: int, stop: int, scale: float, most: NDArray[np.float64]
     ) -> tuple[bytes, NDArray[np.float64]]:
         payload, _, errors = _core.near_encode(
             self.measure.core,
             self.curves,
-            self.values[first : first + self.chunk],
-            self._header(scale, (0.0, 0.0)),
+            self.values[first:stop],
+            self.header(scale, (0.0, 0.0)),
             scale,
             self.rate or (_COARSE_RATE if self._is_coarse(scale) else _RATE),
             self._is_coarse(scale),
             self.weights,
             most,
             self.value_most,
-            self.kept[first : first + self.chunk],
+            self.kept[first:stop],
             3,
         )
         return payload, errors
 
-    def _chunks(
-        self, scale: float, most: NDArray[np.float64]
+    def chunks(
+        self, scale: float, most: NDArray[np.float64], window: slice | None = None
     ) -> tuple[list[Chunk], NDArray[np.float64]]:
+        """Code at a scale, within these largest errors of points, (P,), all frames or a few.
+
+        Gives the chunks, and the errors of what they decode to, (F, P).
+        """
         chunks, errors = [], []
-        for first in range(0, len(self.values), self.chunk):
-            payload, found = self._payload(first, scale, most)
-            chunks.append(Chunk(first, len(found), payload))
+        first, stop, _ = (window or slice(None)).indices(len(self.values))
+        for begin in range(first, stop, self.chunk):
+            payload, found = self._payload(begin, min(begin + self.chunk, stop), scale, most)
+            chunks.append(Chunk(begin, len(found), payload))
             errors.append(found)
         return chunks, np.concatenate(errors)
-
-    def _scale_of_budget(self) -> float:
-        """Find about the finest scale at which header and chunks take no more than the budget."""
-        unbounded = np.full(self.measure.points, inf)
-        scale, power = self.goal.mean * _SCALE_OF_MEAN, -0.7
-        best: tuple[int, float] | None = None
-        before: tuple[float, float] | None = None
-        for _ in range(_MOST_TRIES):
-            chunks, _ = self._chunks(scale, unbounded)
-            header = len(self._header(scale, (scale, scale)))
-            size = header + sum(map(_size, chunks))
-            if size <= self.budget and (best is None or size > best[0]):
-                best = size, scale
-            if _FULL_ENOUGH * self.budget <= size <= self.budget:
-                break
-            if before and before[0] != scale and before[1] != size:
-                found = log(size / before[1]) / log(scale / before[0])
-                power = min(max(found, -1.5), -0.1)
-            before = scale, size
-            move = log(_AIM * self.budget / size) / power
-            scale *= float(np.exp(min(max(move, -3.0), 3.0)))
-        if best is None:
-            raise ParameterError(
-                "near:rate",
-                expected="more",
-                found=f"{self.budget:.0f} bytes for this clip, too few",
-            )
-        return best[1]
-
-    def _scale(self) -> float:
-        """Find the scale at which the mean error is the goal's."""
-        scale, tried = self.goal.mean * _SCALE_OF_MEAN, list[_Try]()
-        unbounded = np.full(self.measure.points, inf)
-        for _ in range(_TRIES):
-            errors = self._chunks(scale, unbounded)[1]
-            off = self._off(errors)
-            if off == -inf:
-                return scale
-            excess = self._excess(errors / self.parts)
-            tried.append(_Try(off, float(excess.max()), scale, self.weights))
-            if tried[-1].lack <= 0:
-                break
-            slope = 1.0
-            if len(tried) > 1 and tried[-2].off != off:
-                slope = log(scale / tried[-2].scale) / (off - tried[-2].off)
-            self._weigh(self.weights * np.maximum(excess, 1.0) ** _HASTE)
-            move = -off * min(max(slope, 0.4), 2.5)
-            scale *= float(np.exp(min(max(move, -2.0), 2.0)))
-        best = min(tried, key=lambda one: one.lack)
-        self._weigh(best.weights)
-        return best.scale
