@@ -35,7 +35,9 @@ SCALES = {"fine": (0.0085, 0.012), "middling": (0.085, 0.04, 0.28), "coarse": (1
 CURVES = {"root": 2, "rhumerus": 4, "lhumerus": 4, "rfemur": 1, "lfemur": 1}
 """Orders of the curves' axes: heading outermost; those that are best for most clips."""
 WEIGHTS = {"upperneck": 4.0, "lowerneck": 1.5, "head": 1.3, "lhumerus": 1.2, "rhumerus": 1.2}
-GROUP, SPAN, REACH = 64, 256, 6
+GROUP, REACH = 64, 6
+SHORT_SPANS = 1.2e-3
+"""Of the figure's size: scales at which spans are no longer short."""
 SOURCES = 20
 WORTH = {"fine": 50, "middling": 200, "coarse": 50}
 """Observations that count as seen."""
@@ -151,7 +153,7 @@ def header_of(window: Window, exponents: NDArray[np.int64], scale: float, start:
     base = round(log2(scale) * STEPS_PER_OCTAVE)
     return pack_header(
         True,
-        relative < 1.6e-4,
+        relative < SHORT_SPANS,
         (0.0, 0.0),
         6 if relative < 2e-4 else 4,
         [base + int(each) for each in exponents],
@@ -187,8 +189,9 @@ def waves_of(
     drawn /= 2.0 ** ((round(log2(scale) * STEPS_PER_OCTAVE) + exponents) / STEPS_PER_OCTAVE)
     frames = len(drawn) // GROUP * GROUP
     triangle = np.array([*range(1, REACH + 2), *range(REACH, 0, -1)]) / (REACH + 1) ** 2
-    for first in range(0, frames, SPAN):
-        span = drawn[first : min(first + SPAN, frames)]
+    length = 64 if scale / window.size < SHORT_SPANS else 256
+    for first in range(0, frames, length):
+        span = drawn[first : min(first + length, frames)]
         before = np.repeat(drawn[[max(0, first - 1)]], REACH, axis=0)
         if first:
             before = drawn[first - REACH : first]

@@ -50,7 +50,7 @@ class Writer {
     near::code_starts(side_, plan, {{}, {100, -50, 200}});
     int length = 0;
     for (std::size_t first = 0; first < kFrames; first += static_cast<std::size_t>(length)) {
-      length = near::span_of(true, first, kFrames - first);
+      length = near::span_of(true, kFrames - first);
       for (std::size_t i = 0; i < coder_.channels.size(); ++i) {
         coder_.channels[i].begin_span(length);
         part(i, 0, length);

@@ -14,16 +14,17 @@
 
 namespace mocapress::near {
 
-inline constexpr int kLongest = 256;  // frames of a block, and of a span of all channels
+inline constexpr int kLongest = 256;  // frames of a block, and of a long span of all channels
+inline constexpr int kShortSpan = 64;
 inline constexpr int kShortest = 8;
 // Up to which sine a block has coefficients, by its class.
 inline constexpr std::array<int, 17> kEnds = {0,  1,  2,  3,  4,  6,   8,   11, 16,
                                               22, 32, 45, 64, 90, 128, 181, 255};
 
-// Frames of the span that begins at a frame of a chunk, where so many are left. Where the first are
-// short, channels learn early to foretell each other.
-inline int span_of(bool early, std::size_t first, std::size_t left) {
-  int length = !early || first >= 256 ? kLongest : first < 128 ? 64 : 128;
+// Frames of a span where so many are left. After each, channels have learned to foretell each other
+// a little better.
+inline int span_of(bool is_short, std::size_t left) {
+  int length = is_short ? kShortSpan : kLongest;
   while (length > kShortest && static_cast<std::size_t>(length / 2) >= left) length /= 2;
   return length;
 }
@@ -76,7 +77,7 @@ struct Start;
 // What all channels of a clip share, and what each has of its own.
 struct Plan {
   const Start* start = nullptr;  // what coders begin with; none for nothing
-  bool early = true;             // whether the first spans are short
+  bool short_spans = true;       // or long ones
   double knot = 0.5;             // the step of knots, in steps of the channel
   std::vector<double> steps;
   Joints joints;

@@ -57,7 +57,7 @@ class Decoding {
     begin();
     int length = 0;
     for (std::size_t first = 0; first < frames_; first += static_cast<std::size_t>(length)) {
-      length = span_of(plan_.early, first, frames_ - first);
+      length = span_of(plan_.short_spans, frames_ - first);
       const std::size_t count =
           std::min<std::size_t>(static_cast<std::size_t>(length), frames_ - first);
       prediction_.begin_span(length);
@@ -156,7 +156,8 @@ Prediction prediction_of(const Coder& coder, const Plan& plan) {
     steps.push_back(plan.steps[channel.index]);
     firsts.push_back(channel.last);
   }
-  Prediction prediction(sources_of(plan.joints, columns), steps, firsts, plan.early ? 3.0 : 100.0);
+  Prediction prediction(sources_of(plan.joints, columns), steps, firsts,
+                        plan.short_spans ? kShortPace : kLongPace);
   if (plan.start != nullptr)
     prediction.assume(plan.start->assumed, plan.start->observations, columns);
   return prediction;
@@ -174,7 +175,7 @@ Plan read_header(ByteView header, std::size_t columns) {
   Plan plan;
   record.numbers(2);  // how far the clip was found to be off: for readers, not for decoding
   const std::int64_t flags = record.integer(15);
-  plan.early = (flags & 2) == 0;
+  plan.short_spans = (flags & 2) == 0;
   plan.radians = (flags & 4) != 0;
   plan.knot = static_cast<double>(record.integer(63) + 1) / 8;
   const std::int64_t base = record.signed_integer();

@@ -11,7 +11,7 @@ namespace mocapress::near {
 namespace {
 
 constexpr std::size_t kMostSources = 20;
-constexpr double kFade = 0.95;  // of what was seen, in a span
+constexpr double kMostCaution = 3;  // where something is assumed
 
 }  // namespace
 
@@ -41,8 +41,8 @@ std::vector<std::vector<std::size_t>> sources_of(const Joints& joints,
 
 Prediction::Prediction(std::vector<std::vector<std::size_t>> sources,
                        const std::vector<double>& steps, const std::vector<double>& firsts,
-                       double caution)
-    : channels_(sources.size()), caution_(caution) {
+                       Pace pace)
+    : channels_(sources.size()), pace_(pace) {
   std::size_t places = 0;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Own& own = channels_[i];
@@ -83,7 +83,7 @@ void Prediction::assume(const std::vector<Assumed>& all, double observations,
     }
   }
   seen_ = observations;
-  caution_ = 0;
+  pace_.caution = std::min(pace_.caution, kMostCaution);
 }
 
 void Prediction::begin_span(int length) { length_ = static_cast<std::size_t>(length); }
@@ -107,7 +107,7 @@ void Prediction::predict(std::size_t i, double* curve) {
     for (std::size_t a = 0; a < m; ++a) {
       const double step = channels_[own.sources[a / 2]].step;
       double& entry = scratch_[a * next + a];
-      entry = entry + entry * (caution_ / seen_);
+      entry = entry + entry * (pace_.caution / seen_);
       entry = entry + step * step / (own.step * own.step);
     }
     solved = solve(scratch_.data(), shares_.data(), m);
@@ -151,8 +151,8 @@ void Prediction::end_span(std::size_t frames) {
     add_products(move_waves_.data(), uses_, weights_.data(), equations_.data());
     seen_ += static_cast<double>(kWaves);
   }
-  seen_ = seen_ * kFade;
-  for (double& each : equations_) each *= kFade;
+  seen_ = seen_ * pace_.fade;
+  for (double& each : equations_) each *= pace_.fade;
   for (Own& own : channels_) {
     for (std::size_t k = 0; k <= kReach; ++k) own.past[k] = own.values[length_ - 1 - kReach + k];
     own.last = own.values[length_ - 1];

@@ -23,16 +23,23 @@ struct Assumed {
   double moved = 0, both = 0, averaged = 0;
 };
 
+// How channels learn to foretell each other: in how many observations sources that foretell nothing
+// are assumed to have been seen, and what is left of observations after a span.
+struct Pace {
+  double caution, fade;
+};
+
+inline constexpr Pace kShortPace{0.125, 0.75}, kLongPace{100, 0.8};  // by the length of spans
+
 // Predicts channel after channel of a span. What is foretold is how far a channel moves away from
 // its value in the frame before the span: a sum of how far the sources do, and their averages over
 // some frames.
 class Prediction {
  public:
   Prediction() = default;
-  // Of the channels that move: their sources, their steps, and where each begins; and how many
-  // observations of sources that foretell nothing are assumed.
+  // Of the channels that move: their sources, their steps, and where each begins.
   Prediction(std::vector<std::vector<std::size_t>> sources, const std::vector<double>& steps,
-             const std::vector<double>& firsts, double caution);
+             const std::vector<double>& firsts, Pace pace);
 
   // Begins as if this had been seen in so many observations; channels are columns.
   void assume(const std::vector<Assumed>& all, double observations,
@@ -65,7 +72,7 @@ class Prediction {
   void weigh_bands();
 
   std::vector<Own> channels_;
-  double caution_ = 0;
+  Pace pace_{};
   std::size_t length_ = 0;
   double seen_ = 0;                // observations, which fade
   std::vector<double> equations_;  // of all channels

@@ -137,7 +137,7 @@ class Encoding {
     begin();
     int length = 0;
     for (std::size_t first = 0; first < frames_; first += static_cast<std::size_t>(length)) {
-      length = span_of(task_.plan.early, first, frames_ - first);
+      length = span_of(task_.plan.short_spans, frames_ - first);
       const std::size_t count =
           std::min<std::size_t>(static_cast<std::size_t>(length), frames_ - first);
       bounded_span(first, length, count);

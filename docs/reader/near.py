@@ -290,7 +290,7 @@ class Header:
         record = Record(header)
         record.numbers(2)
         flags = record.integer()
-        self.early, self.radians, known = flags & 2 == 0, flags & 4 != 0, flags & 8 != 0
+        self.short_spans, self.radians, known = flags & 2 == 0, flags & 4 != 0, flags & 8 != 0
         self.knot = (record.integer() + 1) / 8
         exponent, start = record.signed(), record.integer()
         self.start = start_of(start - 1, known, tuple(CHANCES.items())) if start else None
@@ -367,7 +367,7 @@ class Foretelling:
         self.products = [[[0.0] * (2 * len(s)) for _ in range(2 * len(s))] for s in self.sources]
         self.targets = [[0.0] * (2 * len(s)) for s in self.sources]
         self.seen = 0.0
-        self.caution = 3.0 if header.early else 100.0
+        self.caution, self.fade = (0.125, 0.75) if header.short_spans else (100.0, 0.8)
         if header.start and header.start.assumed:
             self.assume(header.start)
         self.features: list[tuple[list[float], list[float]]] = []
@@ -376,7 +376,7 @@ class Foretelling:
     def assume(self, start: Start) -> None:
         """Begin as if some had been seen."""
         worth = float(start.observations[0])
-        self.seen, self.caution = worth, 0.0
+        self.seen, self.caution = worth, min(self.caution, 3.0)
         for i, channel in enumerate(self.channels):
             products, targets = self.products[i], self.targets[i]
             for k, j in enumerate(self.sources[i]):
@@ -439,10 +439,10 @@ class Foretelling:
             for i, sources in enumerate(self.sources):
                 self.learn(i, waves, [waves[s][kind] for s in sources for kind in (0, 1)])
             self.seen += 63
-        self.seen *= 0.95
+        self.seen *= self.fade
         for i in range(len(self.channels)):
-            self.products[i] = [[0.95 * each for each in row] for row in self.products[i]]
-            self.targets[i] = [0.95 * each for each in self.targets[i]]
+            self.products[i] = [[self.fade * each for each in row] for row in self.products[i]]
+            self.targets[i] = [self.fade * each for each in self.targets[i]]
 
     def learn(self, i: int, waves: list[list[list[float]]], sources: list[list[float]]) -> None:
         """Add what 64 frames show of a channel."""
@@ -521,9 +521,7 @@ class Chunk:
         self.begin()
         foretelling, first = Foretelling(self.channels, self.header), 0
         while first < self.frames:
-            n = 256
-            if self.header.early and first < 256:
-                n = 64 if first < 128 else 128
+            n = 64 if self.header.short_spans else 256
             while n > 8 and n // 2 >= self.frames - first:
                 n //= 2
             foretelling.begin_span()

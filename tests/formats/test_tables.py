@@ -193,6 +193,16 @@ def test_rows_that_are_broken_are_named_and_cost_no_others(
         assert np.allclose(clip.values[-9:], np.round(places[-9:], 5), equal_nan=True)
 
 
+@pytest.mark.parametrize("rate", ["1e999999999", "1e-999999999", "9" * 100_000, "nan", "-1", "x"])
+def test_an_absurd_rate_is_no_rate(rate: str, tmp_path: Path) -> None:
+    data = trc(markers(), rate=rate)
+    assert mp.read(data).frame_time is None
+    assert mp.decompress(mp.compress(data, "exact:level=1")) == data
+    (tmp_path / "a_motion.tsv").write_text("1.5\t2\n2.5\t7\n4\t1\n")
+    (tmp_path / "a_motion.json").write_text(f'{{"SamplingFrequency": "{rate}"}}')
+    assert mp.read(tmp_path / "a_motion.tsv").frame_time is None
+
+
 def test_what_stands_behind_a_table_is_named() -> None:
     with pytest.warns(mp.MotionWarning, match="something behind the last row"):
         assert mp.read(trc(markers()) + b"end of file\r\n").frames == 150

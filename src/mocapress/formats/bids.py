@@ -5,12 +5,12 @@ A file ``..._motion.tsv`` has rows of numbers alone. ``..._channels.tsv`` has a 
 """
 
 import json
-from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from typing import NamedTuple
 
 from mocapress.errors import FormatError
 from mocapress.formats.contract import Near
+from mocapress.motion.frame_time import rate_of
 
 _MOTION, _CHANNELS, _FACTS = "_motion", "_channels.tsv", "_motion.json"
 _NONE = "n/a"
@@ -50,7 +50,7 @@ def channels_beside(near: Near, width: int) -> Channels | None:
         )
     rates = {row.get("sampling_frequency", _NONE) for row in rows}
     if rate is None and len(rates) == 1:
-        rate = _number(rates.pop())
+        rate = rate_of(rates.pop())
     units = [row.get("units", _NONE) for row in rows]
     return Channels(
         [row["name"] for row in rows],
@@ -75,12 +75,4 @@ def _rate(data: bytes) -> Fraction | None:
         facts = json.loads(data, parse_float=str, parse_int=str)
     except ValueError as error:
         raise FormatError("no JSON", file=_FACTS, expected="an object") from error
-    return _number(facts.get("SamplingFrequency")) if isinstance(facts, dict) else None
-
-
-def _number(text: object) -> Fraction | None:
-    try:
-        number = Decimal(str(text))
-    except InvalidOperation:
-        return None
-    return Fraction(number) if number.is_finite() and 0 < number < 10**9 else None
+    return rate_of(str(facts.get("SamplingFrequency"))) if isinstance(facts, dict) else None

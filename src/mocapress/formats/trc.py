@@ -1,7 +1,6 @@
 """TRC: marker trajectories as a table, of Motion Analysis and those who came after."""
 
 from dataclasses import replace
-from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from functools import partial
 from itertools import pairwise
@@ -21,7 +20,7 @@ from mocapress.formats.tables import TABLE, full_values, stream_of
 from mocapress.formats.tables import split as split_table
 from mocapress.motion import Clip, Column, Skeleton, Stream
 from mocapress.motion.columns import distinct
-from mocapress.motion.frame_time import short_decimal
+from mocapress.motion.frame_time import rate_of, short_decimal
 from mocapress.motion.markers import POINTS
 
 Values = NDArray[np.float64]
@@ -45,12 +44,9 @@ def split(data: bytes, skeleton: Skeleton | None, file: str | None) -> Split:
     assert isinstance(layout, TableLayout)
     facts = _facts(layout)
     clip = parts.clip
-    try:
-        rate = Fraction(Decimal(facts.get("DataRate", "").replace(",", ".")))
-    except (InvalidOperation, ValueError):
-        rate = Fraction(0)
+    rate = rate_of(facts.get("DataRate", "").replace(",", "."))
     stream = clip.streams[TABLE]
-    if rate > 0:
+    if rate is not None:
         stream = replace(stream, frame_time=1 / rate)
     clip = replace(clip, streams={POINTS: stream})
     return parts._replace(clip=clip, problems=(*parts.problems, *_problems(layout, facts)))

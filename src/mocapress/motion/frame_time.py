@@ -1,12 +1,15 @@
 """Frame times, exactly as files state them."""
 
-from decimal import Decimal, localcontext
+from decimal import Decimal, InvalidOperation, localcontext
 from fractions import Fraction
 
 from mocapress.errors import ParameterError
 
 FrameTime = Decimal | Fraction | None
 """Seconds per frame, exactly; None where the source does not say."""
+
+_RATE_DIGITS, _LONGEST_RATE = 9, 100
+"""Digits of a rate before or behind its point; characters."""
 
 
 def of_rate(fps: float) -> Fraction:
@@ -21,6 +24,17 @@ def of_rate(fps: float) -> Fraction:
     if not 0 < fps < float("inf"):
         raise ParameterError("fps", expected="a number above 0", found=str(fps))
     return 1 / Fraction(str(fps))
+
+
+def rate_of(text: str) -> Fraction | None:
+    """Give the rate that a file states, in frames per second; None where it is no usual number."""
+    try:
+        number = Decimal(text)
+    except InvalidOperation:
+        return None
+    # As a fraction, 1e-999999999 would take time without end.
+    usual = number.is_finite() and number > 0 and abs(number.adjusted()) < _RATE_DIGITS
+    return Fraction(number) if usual and len(text) < _LONGEST_RATE else None
 
 
 def decimal_seconds(frame_time: Decimal | Fraction) -> Decimal:

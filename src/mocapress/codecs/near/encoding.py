@@ -32,9 +32,9 @@ _WEIGHTS = {"upperneck": 2.0, "head": 1.5} | {
 """Of joints of the known figure, of which the means would otherwise be above that."""
 _SAMPLE = 256
 """Frames by which channels are weighed."""
-_COARSE = 1e-3
-"""Of the figure's size: at coarser means long spans are worth more than early predictions; for the
-known figure, of which predictions are known at once, at all."""
+_SHORT_SPANS, _KNOWN_SHORT_SPANS = 6.5e-4, 4e-4
+"""Of the figure's size: at coarser means long blocks are worth more than new predictions; the
+latter for the known figure, whose predictions begin with what was learned."""
 _STARTS = (1.2e-4, 1.3e-3)
 """Of the figure's size: means from which the next of the learned starts is taken."""
 _SCALE_OF_ANY_MEAN = 3.0
@@ -212,10 +212,11 @@ class Encoder:
     def header(self, scale: float, errors: tuple[float, float]) -> bytes:
         """Give the codec header for a scale and mean and largest error."""
         steps = self._steps(scale)
-        early = not self.known and self._part(scale) < _COARSE
+        coarsest = _KNOWN_SHORT_SPANS if self.known else _SHORT_SPANS
+        short_spans = self._part(scale) < coarsest
         return pack_header(
             self.goal.in_space,
-            early,
+            short_spans,
             errors,
             self._knot(scale),
             steps,

@@ -46,7 +46,7 @@ def joints_of(columns: Sequence[Column], skeleton: Skeleton | None) -> Joints:
 
 def pack_header(
     in_space: bool,
-    early: bool,
+    short_spans: bool,
     errors: tuple[float, float],
     knot: int,
     steps: Sequence[int],
@@ -62,8 +62,8 @@ def pack_header(
     ----------
     in_space
         Whether errors are those of joints.
-    early
-        Whether the first spans are short.
+    short_spans
+        Whether spans are short.
     errors
         Mean and largest; they are rounded up to three digits.
     knot
@@ -85,7 +85,10 @@ def pack_header(
     writer = Writer()
     writer.numbers([_rounded_up(error) for error in errors])
     writer.integer(
-        (1 if in_space else 0) + (0 if early else 2) + (4 if radians else 0) + (8 if known else 0)
+        (1 if in_space else 0)
+        + (0 if short_spans else 2)
+        + (4 if radians else 0)
+        + (8 if known else 0)
     )
     writer.integer(knot - 1)
     base = steps[0] if steps else 0
