@@ -45,7 +45,8 @@ _OTHERS = {5, 4, 3, 2, 1}
 _SHORT = 128
 """Up to so many frames all lower levels are tried."""
 _NEAR = 1.0025
-"""Lower levels that come so near with these frames are tried with all frames."""
+"""Lower levels that come so near with these frames are tried with all frames; up to level 5, those
+that are no larger."""
 _MOST_NEAR = 2
 """So many of them, at most."""
 _TELLING = 2
@@ -234,17 +235,18 @@ class _Way:
         roles: Roles,
         level: int,
         start: Start,
+        header: int | None = None,
     ) -> "_Way":
-        """Code a clip as a codec asks for."""
+        """Code a clip as a codec asks for; ``header`` is the size of its header, if it is known."""
         coder, size = _Coder(roles, level, start), codec.chunk
         firsts = range(0, len(numbers), size)
         coded = each(lambda first: coder.encode(numbers[first : first + size]), firsts)
         payloads = [payload for payload, _, _ in coded]
-        header = pack_header(roles, Told(), has_model=False, level=level, asked=codec.level)
+        if header is None:
+            told = pack_header(roles, Told(), has_model=False, level=level, asked=codec.level)
+            header = len(told)
         payload = sum(map(len, payloads))
-        return cls(
-            roles, level, payloads, len(header) + payload, len(header) + (coded[0][2] or payload)
-        )
+        return cls(roles, level, payloads, header + payload, header + (coded[0][2] or payload))
 
 
 def _smallest(way: _Way, numbers: NDArray[np.float64], codec: Exact) -> _Way:
@@ -255,16 +257,22 @@ def _smallest(way: _Way, numbers: NDArray[np.float64], codec: Exact) -> _Way:
     come near, on all frames.
     """
     rows, asked = numbers[: min(_TRIED, codec.chunk)], codec.level
+    # Their sizes, by what they depend on.
+    headers: dict[tuple[bool, bool], int] = {}
 
     def at(level: int, tried: NDArray[np.float64]) -> _Way:
         roles = replace(way.roles, couplings=()) if level <= _UNCOUPLED else way.roles
-        return _Way.of(tried, codec, roles, level, Start())
+        kind = level <= _UNCOUPLED, level == USUAL_LEVEL
+        one = _Way.of(tried, codec, roles, level, Start(), headers.get(kind))
+        headers[kind] = one.size - sum(map(len, one.payloads))
+        return one
 
     lower = range(1, asked) if len(numbers) <= _SHORT else _OTHERS | {asked - 1}
     tried = each(lambda level: at(level, rows), sorted(n for n in lower if 0 < n < asked))
     if tried and len(rows) < len(numbers):
-        first = at(way.level, rows).size if asked <= _FAST else way.early
-        near = [one for one in tried if one.size <= _NEAR * first]
+        # What is known only about may be off a little; and the fast levels are to stay fast.
+        first = at(way.level, rows).size if asked <= _FAST else _NEAR * way.early
+        near = [one for one in tried if one.size <= first]
         near.sort(key=lambda one: one.size)
         tried = [at(one.level, numbers) for one in near[:_MOST_NEAR]]
     return min([way, *tried], key=lambda one: (one.size, -one.level))
