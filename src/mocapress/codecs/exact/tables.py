@@ -21,6 +21,8 @@ Places = NDArray[np.int64]
 
 _GRID, _LIST, _ALL = 0, 1, 2
 _TRIED = 8
+_CHEAPEST = 24.0
+"""Bits that a table takes, at least."""
 _MOVED = 4.0
 """Bits beside those of the distance that it costs to tell that a number is off its grid."""
 _BOXED = np.uint64(0x7FF80001 << 32)
@@ -125,6 +127,10 @@ class Tables:
             gain = saved.by(self.made[place], new=False)
             if gain > best:
                 best, number = gain, place + 1
+        # Steps of a table are at most as wide as its numbers lie apart, which bounds what it saves.
+        most = len(moved) * (np.log2(np.ptp(distinct)) - saved.fineness.min())
+        if most <= max(best + 1, _CHEAPEST):
+            return number
         made = find_grid(distinct)
         grid = None if made is None else Table(*made)
         listed = Table(numbers=distinct) if 2 * len(distinct) < len(moved) else None
