@@ -37,7 +37,7 @@ def fpzip() -> Rival:
         restored: Values = module.decompress(data, order="C").reshape(shape[::-1])
         return np.ascontiguousarray(restored.T)
 
-    return Rival(lambda v: module.compress(np.ascontiguousarray(v.T), precision=0), decompress)
+    return Rival(lambda v: module.compress(np.array(v.T, order="C"), precision=0), decompress)
 
 
 def zfp() -> Rival:
