@@ -1,4 +1,4 @@
-"""Channels of ``exact`` at levels 6 to 9 (docs/format/exact.md)."""
+"""Channels of ``exact`` at levels 6 to 10 (docs/format/exact.md)."""
 
 import math
 from itertools import islice

@@ -222,6 +222,27 @@ def test_bounds_and_means_are_kept_by_all_efforts(samples: Path, effort: int) ->
     assert errors.mean() * CMU == pytest.approx(0.1, rel=0.2 if effort == 1 else 0.03)
 
 
+def test_a_still_middle_does_not_mislead_the_first_effort(samples: Path) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")[:900]
+    values = clip.values.copy()
+    values[150:750] = values[150] + 1e-3 * np.sin(np.arange(600) / 20)[:, None]
+    clip = clip.with_values(values)
+    errors = joint_errors(clip, decoded_by(mp.codec("near:mean=0.1cm,effort=1"), clip), 3 / CMU)
+    assert errors.mean() * CMU == pytest.approx(0.1, rel=0.25)
+
+
+def test_a_mean_above_what_bounds_leave_costs_nothing(samples: Path) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")[:300]
+    sizes = [
+        sum(
+            len(chunk.payload)
+            for chunk in mp.codec(spec).encode(clip.main, skeleton=clip.skeleton).chunks
+        )
+        for spec in ("near:max=0.1cm", "near:max=0.1cm,mean=0.08cm", "near:max=0.1cm,mean=1cm")
+    ]
+    assert sizes[0] * 0.98 < min(sizes) <= max(sizes) < 1.02 * sizes[0]
+
+
 def test_efforts_that_there_are_not_are_refused() -> None:
     with pytest.raises(ParameterError, match="near:effort; expected 1 to 3; found 4"):
         mp.codec("near:effort=4")

@@ -50,6 +50,7 @@ def c3d(
     samples: int = 1,
     rotations: Values | None = None,
     announced: int | None = None,
+    stated: int | None = None,
     tail: bytes = b"",
     scale: float = 0.1,
 ) -> bytes:
@@ -65,6 +66,8 @@ def c3d(
         (F, R, 17)
     announced
         Frames that the header announces.
+    stated
+        Frames that a parameter states.
     tail
         What stands behind the frames.
 
@@ -85,6 +88,11 @@ def c3d(
         parameter(processor, "DATA_START", 1, 2, [], integers(processor, [start])),
         parameter(processor, "RATE", 1, 4, [], reals(processor, [119.88])),
         parameter(processor, "SCALE", 1, 4, [], reals(processor, [-1.0 if floats else scale])),
+        *(
+            []
+            if stated is None
+            else [parameter(processor, "LONG_FRAMES", 1, 4, [], reals(processor, [stated]))]
+        ),
         texts(processor, "LABELS", 1, labels),
         texts(processor, "UNITS", 1, ["mm"]),
         groups[1],

@@ -119,6 +119,15 @@ def test_a_count_of_16_bits_may_be_too_small(stated: int, channels: int) -> None
         assert np.array_equal(clip.streams["analog"].values, analog)
 
 
+def test_last_frames_of_zeros_are_frames_where_a_parameter_counts_them() -> None:
+    points = np.random.default_rng(3).normal(size=(70016, 1, 3)).astype(np.float32)
+    points[-10:] = 0
+    words, analog = np.zeros((70016, 1)), np.zeros((70016, 0))
+    data = c3d(points.astype(np.float64), words, analog, announced=65535, stated=70016)
+    data += b"\0" * (-len(data) % 512)
+    assert mp.read(data).frames == 70016
+
+
 def test_frames_that_are_missing_or_too_many_are_named() -> None:
     points, words, analog = walk()
     short = c3d(points, words, analog, samples=4, announced=60)

@@ -232,10 +232,11 @@ def test_of_several_tables_it_is_said_which_was_read(sizes: tuple[int, int], tol
     assert np.array_equal(mp.read(alone).values, clip.values)
 
 
-def test_a_matrix_in_a_header_is_no_other_table() -> None:
+@pytest.mark.parametrize("size", [4, 6])
+def test_a_matrix_in_a_header_is_no_other_table(size: int) -> None:
     rows = "".join(f"{i * i}.5;{i**3}\n" for i in range(30))
-    data = f"offsets\n1;0;0;0\n0;1;0;0\n0;0;1;0\n0;0;0;1\nx;y\n{rows}".encode()
-    assert mp.read(data).frames == 30
+    matrix = "".join(";".join(map(str, row)) + "\n" for row in np.eye(size, dtype=int).tolist())
+    assert mp.read(f"offsets\n{matrix}x;y\n{rows}".encode()).frames == 30
 
 
 def test_two_columns_with_decimal_commas_are_two_numbers() -> None:

@@ -163,7 +163,7 @@ def _way(lines: list[bytes]) -> _Way | None:
 
 
 def _ways(lines: Sequence[bytes]) -> Iterator[_Way]:
-    """Give ways to cut lines; of equally good ones the first counts."""
+    """Give ways to cut lines; of equally good ones the narrowest counts, then the first."""
     for sign in _SIGNS:
         found = [line for line in lines if sign in line]
         if 2 * len(found) <= len(lines) and sign != b"\t":

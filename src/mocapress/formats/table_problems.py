@@ -12,8 +12,10 @@ _LONGEST_LINE = 2**12
 """Bytes of a line outside the rows that are looked at."""
 _MOST_NAMED = 2**12
 """Lines, and cells of a column, that are looked at to name those that are broken."""
-_ROWS_OF_A_TABLE = 5
-"""So many in a header are no matrix of a calibration."""
+_ROWS_OF_A_MATRIX = 6
+"""So many in a header may be a matrix of a calibration."""
+_PART_OF_A_TABLE = 0.1
+"""More, but fewer than this part of the rows, are a header's own."""
 
 
 def problems_of(layout: TableLayout) -> list[Problem]:
@@ -46,7 +48,7 @@ def problems_of(layout: TableLayout) -> list[Problem]:
         f": lines {first} to {last} are read; save the others in a file of their own to read them"
     )
     above = _rows(layout.header)
-    if len(above) >= _ROWS_OF_A_TABLE:
+    if len(above) > _ROWS_OF_A_MATRIX and len(above) >= _PART_OF_A_TABLE * layout.rows:
         what = "rows of another table before the first row, which are left out" + apart
         found.append(Problem.of(UNREADABLE_ROWS, what, above[0]))
     if layout.tail.strip(b' \t\r\n"'):

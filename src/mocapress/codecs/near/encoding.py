@@ -17,7 +17,7 @@ from mocapress.motion import Skeleton, Stream
 
 _MOST_STEP = 4096
 SCALE_OF_MEAN = 2.5
-"""Where the search for a mean begins; 5.5 at coarse ones."""
+"""Where the search for a mean begins."""
 _INNER, _NEXT, _OUTER = 1.05, 1.15, 1.5
 """Means of joints may be so many times that of all; of those without further joints the last, of
 those that such a joint follows the one before."""

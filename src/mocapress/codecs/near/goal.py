@@ -89,13 +89,14 @@ def goal_of(
         precision = Amount(centimetres / HEIGHT * size if figure else centimetres, "")
     largest = own(most) if most else own(precision) * MOST_OF_PRECISION if precision else inf
     of_joints = _of_joints(figure, {part: own(each) for part, each in parts.items()})
-    if mean:
-        middle = own(mean)
-    elif precision:
+    if precision and not mean:
         middle = own(precision) * MEAN_OF_PRECISION
     else:
+        # Above this mean, corrections of what is beyond the bound cost more than they save.
         fine = figure is not None and largest < FINE * size
         middle = largest * (MEAN_OF_FINE_MOST if fine else MEAN_OF_MOST)
+        if mean:
+            middle = min(middle, own(mean))
     return Goal(figure is not None, middle, largest, radius, size, of_joints, mean is not None)
 
 

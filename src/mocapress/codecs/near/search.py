@@ -25,6 +25,8 @@ _DEAR = 0.3
 """What the worst joint's excess counts beside the bytes, both as logarithms."""
 _WINDOW = 512
 """Frames of the middle of a clip in which the first effort searches."""
+_ALIKE = 0.15
+"""Logarithm of by how much the mean of the whole clip may then be off."""
 _MOST_TRIES = 12
 _FULL_ENOUGH, _AIM = 0.97, 0.985
 """Of a budget of bytes: what is near enough, and what is tried next."""
@@ -114,18 +116,21 @@ def _next(encoder: Encoder, found: list[Coded]) -> float:
 
 
 def _quickly(encoder: Encoder) -> float:
-    """Find about the scale at which the mean error is the goal's, in a part of the clip."""
+    """Find about the scale at which the mean error is the goal's.
+
+    That of the middle of the clip, if it does for the whole; where that is unlike, of the whole.
+    """
     first = max(0, (len(encoder.values) - _WINDOW) // 2)
-    window = slice(first, first + _WINDOW)
-    found: list[Coded] = []
     scale = encoder.goal.mean * SCALE_OF_MEAN
-    for _ in range(_LOOSE):
-        found.append(_at(encoder, scale, bounded=False, window=window))
-        if found[-1].off == -inf:
-            break
-        scale = _next(encoder, found)
-        if abs(found[-1].off) < _READY:
-            break
+    for window, enough in ((slice(first, first + _WINDOW), _READY), (None, _ALIKE)):
+        found: list[Coded] = []
+        for _ in range(_LOOSE):
+            found.append(_at(encoder, scale, bounded=False, window=window))
+            if found[-1].off == -inf or (window is None and abs(found[-1].off) < enough):
+                break
+            scale = _next(encoder, found)
+            if abs(found[-1].off) < enough:
+                break
     return scale
 
 
