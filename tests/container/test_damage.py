@@ -161,9 +161,10 @@ def test_a_codec_that_cannot_be_is_an_error(files: dict[str, bytes], codec: Code
 
 
 def test_what_a_file_says_of_its_codec_counts_not_the_defaults(files: dict[str, bytes]) -> None:
-    """Were a default to change, old files decode as they did."""
-    spec = Opened(Source(files[SPECS[0]])).streams[0].codec
-    assert spec == CodecSpec("exact", {"level": 5, "chunk": 8})
+    """Were a default to change, old files decode as they did; the codec header names the level."""
+    opened = Opened(Source(files[SPECS[0]]))
+    assert opened.streams[0].codec == CodecSpec("exact", {"chunk": 8})
+    assert opened.codec() == mp.codec("exact:level=5,chunk=8")
 
 
 def test_many_columns_in_few_bytes_are_refused() -> None:
