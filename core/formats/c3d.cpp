@@ -259,6 +259,7 @@ C3dLayout c3d_layout(ByteView data, std::uint64_t file_size) {
     layout.analog = best->analog;
     layout.samples = best->samples;
     layout.frames = best->frames;
+    layout.stated = std::ranges::find(counts, best->frames.count) != counts.end();
   }
   const std::uint64_t per_frame =
       std::max<std::uint64_t>(parameters.whole("ROTATION", "RATIO").value_or(1), 1);

@@ -41,6 +41,7 @@ struct C3dLayout {
   std::uint64_t analog = 0;     // numbers in a frame
   std::uint64_t samples = 1;    // of each analog channel in a frame
   C3dFrames frames;             // of points and analog; a count of 0: none were found
+  bool stated = false;          // whether header or a parameter says that they are so many
   C3dFrames rotations;          // 17 numbers each
   std::vector<C3dParameter> parameters;
 };

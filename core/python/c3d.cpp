@@ -13,7 +13,7 @@ using Frames = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t>;
 // Group, whether it is one, name, type, dimensions, begin, size.
 using Parameter = std::tuple<int, bool, nb::bytes, int, nb::bytes, std::uint64_t, std::uint64_t>;
 using Found = std::tuple<int, bool, std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t,
-                         Frames, Frames, std::vector<Parameter>>;
+                         Frames, bool, Frames, std::vector<Parameter>>;
 
 Found layout(const nb::bytes& data, std::uint64_t size) {
   const C3dLayout found = c3d_layout(view(data), size);
@@ -33,6 +33,7 @@ Found layout(const nb::bytes& data, std::uint64_t size) {
           found.analog,
           found.samples,
           frames(found.frames),
+          found.stated,
           frames(found.rotations),
           std::move(parameters)};
 }
@@ -44,8 +45,9 @@ void bind_c3d(nb::module_& module) {
       "c3d_layout", &layout, nb::arg("data"), nb::arg("size"),
       "Of a file of so many bytes, which begins with these, give processor, whether numbers\n"
       "are floats, announced frames, points, analog numbers in a frame, samples of each channel\n"
-      "in it; begin, count and numbers of the frames\n"
-      "and of the rotations; and the parameters: see core/formats/c3d.hpp.");
+      "in it; begin, count and numbers of the frames, whether the file states that count; the "
+      "same\n"
+      "of the rotations; and the parameters: see core/formats/c3d.hpp.");
 }
 
 }  // namespace mocapress

@@ -7,12 +7,12 @@ import numpy
 from numpy.typing import NDArray
 
 
-def c3d_layout(data: bytes, size: int) -> tuple[int, bool, int, int, int, int, tuple[int, int, int], tuple[int, int, int], list[tuple[int, bool, bytes, int, bytes, int, int]]]:
+def c3d_layout(data: bytes, size: int) -> tuple[int, bool, int, int, int, int, tuple[int, int, int], bool, tuple[int, int, int], list[tuple[int, bool, bytes, int, bytes, int, int]]]:
     """
     Of a file of so many bytes, which begins with these, give processor, whether numbers
     are floats, announced frames, points, analog numbers in a frame, samples of each channel
-    in it; begin, count and numbers of the frames
-    and of the rotations; and the parameters: see core/formats/c3d.hpp.
+    in it; begin, count and numbers of the frames, whether the file states that count; the same
+    of the rotations; and the parameters: see core/formats/c3d.hpp.
     """
 
 class Problem:

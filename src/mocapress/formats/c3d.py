@@ -5,7 +5,6 @@ core/formats/c3d.cpp finds how the frames are laid out. Files are worked on some
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from math import isfinite
 from pathlib import Path
 
 import numpy as np
@@ -36,8 +35,7 @@ from mocapress.motion.markers import ANALOG, CAMERAS, POINTS, RESIDUALS, ROTATIO
 from mocapress.records import Held, Ranges
 
 _BLOCK = 512
-_WORD = 2**16
-_MOST_ANNOUNCED = _WORD - 1
+_MOST_ANNOUNCED = 2**16 - 1
 """Frames; a header that announces them may mean more."""
 _HEAD = 2**20
 """Bytes that tell how the frames are laid out."""
@@ -106,12 +104,12 @@ def _clip(layout: C3dLayout, named: dict[str, Values], file: str | None) -> Clip
 
 def _find_frames(file: Ranges, name: str | None) -> tuple[C3dLayout, tuple[Problem, ...]]:
     """Find where the frames of a file are: its layout, but for the words that differ."""
-    processor, floats, announced, points, analog, samples, frames, turned, _ = _core.c3d_layout(
-        file.read(0, min(_HEAD, file.size)), file.size
+    processor, floats, announced, points, analog, samples, frames, stated, turned, _ = (
+        _core.c3d_layout(file.read(0, min(_HEAD, file.size)), file.size)
     )
     begin, count, numbers = frames
     turned_at, turns, in_turn = turned
-    if announced == _MOST_ANNOUNCED < count and not _is_stated(file.read(0, begin), count):
+    if announced == _MOST_ANNOUNCED < count and not stated:
         size = numbers * (4 if floats else 2)
         count -= _padding(file, begin + count * size, size)
     if not count and not turns:
@@ -136,21 +134,6 @@ def _find_frames(file: Ranges, name: str | None) -> tuple[C3dLayout, tuple[Probl
         np.empty(0, np.uint32),
     )
     return layout, tuple(_problems(announced, count or turns, file.size, begin))
-
-
-def _is_stated(head: bytes, count: int) -> bool:
-    """Tell whether a parameter says how many frames there are; the header cannot count them."""
-    parameters = Parameters.of(head)
-
-    def whole(group: str, name: str) -> int:
-        numbers = [int(n) for n in parameters.numbers(group, name) if isfinite(n)]
-        if len(numbers) > 1:
-            return numbers[0] % _WORD + numbers[1] % _WORD * _WORD
-        return numbers[0] if numbers else 0
-
-    first, last = (whole("TRIAL", f"ACTUAL_{end}_FIELD") for end in ("START", "END"))
-    stated = last - first + 1, whole("POINT", "LONG_FRAMES"), whole("POINT", "FRAMES")
-    return count in stated
 
 
 def _padding(file: Ranges, end: int, size: int) -> int:
