@@ -145,9 +145,6 @@ class Encoding {
     }
   }
 
-  // Whether the curves have another number in place of what was given.
-  bool is_replaced(std::size_t i) const { return !is_usable(i); }
-
   void begin() {
     Bit moves[2];
     Difference<6> firsts;
@@ -181,7 +178,7 @@ class Encoding {
     for (std::size_t i = 0; i < coder_.channels.size(); ++i) span(i, first, length, count);
     // What is kept anyway has no error that others may make good.
     for (std::size_t i = first * channels_; i < (first + count) * channels_; ++i) {
-      if (is_replaced(i)) drawn_[i] = wanted_[i];
+      if (!is_usable(i)) drawn_[i] = wanted_[i];
     }
   }
 
@@ -330,7 +327,7 @@ class Encoding {
     std::vector<char> keeps(frames_ * channels_, 0);
     for (std::size_t i = 0; i < keeps.size(); ++i) {
       const double error = std::fabs(given_[i] - drawn_[i]);
-      keeps[i] = is_replaced(i) || !(error <= task_.value_most[i % channels_]);
+      keeps[i] = !is_usable(i) || !(error <= task_.value_most[i % channels_]);
     }
     std::vector<double> errors(task_.most.size());
     for (std::size_t f = 0; f < frames_ && bounds_.any(); ++f) {
