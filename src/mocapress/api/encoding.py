@@ -1,6 +1,6 @@
 """From the numbers of a clip to the head and the chunks of a file."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -17,9 +17,20 @@ from mocapress.motion import Clip, Column, Skeleton, Stream
 LONGEST_CHUNK = 2**20
 
 
-def stream_head(name: str, stream: Stream, codec: Codec, *, frames: int | None) -> StreamHead:
-    """Give what a file says about a stream, but for what its codec adds."""
-    spec = CodecSpec(codec.id, codecs.parameters(codec))
+def stream_head(
+    name: str,
+    stream: Stream,
+    codec: Codec,
+    *,
+    frames: int | None,
+    left_out: Collection[str] = (),
+) -> StreamHead:
+    """Give what a file says about a stream, but for what its codec adds.
+
+    Parameters that are ``left_out`` it does not name.
+    """
+    named = {key: value for key, value in codecs.parameters(codec).items() if key not in left_out}
+    spec = CodecSpec(codec.id, named)
     return StreamHead(name, frames, stream.frame_time, stream.columns, spec)
 
 
@@ -27,11 +38,8 @@ def coded(
     clip: Clip, name: str, index: int, codec: Codec, encoded: Encoded, model: Model | None
 ) -> tuple[StreamHead, list[CodedChunk]]:
     """Give what a file holds of the first stream of a clip: its stream ``index``, ``name``."""
-    left_out = codec.left_out()
-    named = {key: value for key, value in codecs.parameters(codec).items() if key not in left_out}
     head = replace(
-        stream_head(name, clip.main, codec, frames=clip.frames),
-        codec=CodecSpec(codec.id, named),
+        stream_head(name, clip.main, codec, frames=clip.frames, left_out=codec.left_out()),
         model=model.digest if model and encoded.uses_model else b"",
         header=encoded.header,
     )
