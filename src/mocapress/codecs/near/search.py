@@ -88,13 +88,15 @@ def _searched(encoder: Encoder, effort: int) -> Coded:
     count = _LONG if effort > 2 else _CLOSELY_BOUNDED if close else _BOUNDED
     found: list[Coded] = []
     scale = encoder.goal.mean * SCALE_OF_MEAN
-    while sum(each.bounded for each in found) < count:
+    while True:
         ready = len(found) >= _LOOSE or bool(found and abs(found[-1].off) < _READY)
         found.append(_at(encoder, scale, bounded=ready))
         if found[-1].off == -inf:
             return found[-1] if ready else _at(encoder, scale, bounded=True)
+        bounded = [each for each in found if each.bounded]
+        if len(bounded) == count:
+            return min(bounded, key=Coded.cost)
         scale = _next(encoder, found)
-    return min((each for each in found if each.bounded), key=Coded.cost)
 
 
 def _at(encoder: Encoder, scale: float, *, bounded: bool, window: slice | None = None) -> Coded:
