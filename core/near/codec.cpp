@@ -170,11 +170,29 @@ void turn_back(double* values, std::size_t frames, const Plan& plan,
   }
 }
 
+namespace {
+
+// What a clip has finer, or coarser, than the known figure.
+void make_finer(ByteView bytes, std::vector<std::int64_t>& exponents) {
+  RangeReading side(bytes);
+  std::vector<std::int64_t> apart(exponents.size());
+  code_finer(side, apart);
+  if (!side.exhausted()) fail("how much finer steps are is cut off, too long, or cannot be");
+  std::int64_t finer = 0;
+  for (std::size_t c = 0; c < apart.size(); ++c) {
+    if (apart[c] < -kMostExponent || apart[c] > kMostExponent) fail("steps out of bounds");
+    finer += apart[c];
+    exponents[c] -= 32 * finer;
+  }
+}
+
+}  // namespace
+
 Plan read_header(ByteView header, std::size_t columns) {
   Record record(header);
   Plan plan;
   record.numbers(2);  // how far the clip was found to be off: for readers, not for decoding
-  const std::int64_t flags = record.integer(15);
+  const std::int64_t flags = record.integer(31);
   plan.short_spans = (flags & 2) == 0;
   plan.radians = (flags & 4) != 0;
   plan.knot = static_cast<double>(record.integer(63) + 1) / 8;
@@ -193,6 +211,8 @@ Plan read_header(ByteView header, std::size_t columns) {
     const Figure& figure = known_figure();
     if (columns != figure.exponents.size()) fail("the known figure has other columns");
     const std::int64_t nearest = record.integer((1 << figure.turnings.size()) - 1);
+    std::vector<std::int64_t> exponents(figure.exponents.begin(), figure.exponents.end());
+    if ((flags & 16) != 0) make_finer(record.bytes(), exponents);
     record.end();
     plan.joints = figure.joints;
     plan.turnings = figure.turnings;
@@ -200,11 +220,11 @@ Plan read_header(ByteView header, std::size_t columns) {
     for (std::size_t t = 0; t < plan.turnings.size(); ++t) {
       plan.turnings[t].nearest_to_zero = (nearest >> t & 1) != 0;
     }
-    std::vector<std::int64_t> exponents(figure.exponents.begin(), figure.exponents.end());
     for (std::int64_t& each : exponents) each += base;
     put_steps(exponents);
     return plan;
   }
+  if ((flags & 16) != 0) fail("steps of a figure that is not known");
   RangeReading side(record.bytes());
   record.end();
   std::vector<std::int64_t> apart(columns);

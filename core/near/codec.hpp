@@ -45,6 +45,14 @@ void code_turnings(Side& side, const Joints& joints, std::vector<Turning>& turni
   }
 }
 
+// By how many times 32/64 octaves each step of the known figure is finer than its own, beyond the
+// column before.
+template <class Side>
+void code_finer(Side& side, std::vector<std::int64_t>& apart) {
+  Difference<6> differences;
+  for (std::int64_t& each : apart) each = differences.code(side, each);
+}
+
 // How columns stand in the header: for each, by how many times 32/64 octaves its step is above that
 // of the column before, and its joint; then which joints' curves turn in another order.
 template <class Side>

@@ -250,6 +250,12 @@ nb::bytes columns(std::vector<std::int64_t> apart, std::vector<std::int32_t> joi
   return to_python(side.finish());
 }
 
+nb::bytes finer(std::vector<std::int64_t> apart) {
+  RangeWriting side;
+  near::code_finer(side, apart);
+  return to_python(side.finish());
+}
+
 // What is being learned for the start of coders.
 struct Learning {
   std::vector<near::Assumed> told;
@@ -314,6 +320,8 @@ void bind_near(nb::module_& module) {
              "Give the errors of joints, (F, J), or without a skeleton of values, (F, C).");
   module.def("near_columns", &columns, nb::arg("apart"), nb::arg("joints"), nb::arg("parents"),
              nb::arg("turnings"), "Code what columns have of their own, for the header.");
+  module.def("near_finer", &finer, nb::arg("apart"),
+             "Code how much finer the known figure's steps are than usual, for the header.");
   nb::class_<Learning>(module, "NearLearning", "Learns what coders of `near` begin with.")
       .def(
           nb::init<const std::vector<Learning::Told>&, std::uint64_t>(), nb::arg("assumed"),

@@ -297,6 +297,8 @@ class Header:
         self.firsts = [0.0] * columns
         if known:
             self.take_known(exponent, record.integer(), columns)
+            if flags & 16:
+                self.make_finer(Coded(record.bytes()))
             record.end()
             return
         stream, lengths = Coded(record.bytes()), tree(7)
@@ -321,12 +323,23 @@ class Header:
         figure = known_figure()
         if len(figure.exponents) != columns:
             raise CorruptError("the known figure has other columns")
-        self.steps = [step_of(exponent + each) for each in figure.exponents]
+        self.exponents = [exponent + each for each in figure.exponents]
+        self.steps = [step_of(each) for each in self.exponents]
         self.joints, self.parents, self.firsts = figure.joints, figure.parents, figure.firsts
         self.turnings = [
             replace(turning, nearest_to_zero=bool(nearest >> i & 1))
             for i, turning in enumerate(figure.turnings)
         ]
+
+    def make_finer(self, stream: Coded) -> None:
+        """Take by how much steps are finer than the known figure's."""
+        lengths, finer = tree(6), 0
+        for column, exponent in enumerate(self.exponents):
+            finer += difference(stream, lengths)
+            if not -4096 <= exponent - 32 * finer <= 4096:
+                raise CorruptError("a step out of bounds")
+            self.steps[column] = step_of(exponent - 32 * finer)
+        stream.end()
 
     def above(self, joint: int) -> int:
         """Give the parent of a joint."""

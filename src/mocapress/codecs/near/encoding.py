@@ -29,7 +29,8 @@ _WEIGHTS = {"upperneck": 2.0, "head": 1.5} | {
     for side in "lr"
     for joint, weight in (("humerus", 1.6), ("radius", 1.4), ("foot", 1.7))
 }
-"""Of joints of the known figure, of which the means would otherwise be above that."""
+"""Of joints of the known figure, of which the means would otherwise be above that; with these its
+steps are its own."""
 _SAMPLE = 256
 """Frames by which channels are weighed."""
 _SHORT_SPANS, _KNOWN_SHORT_SPANS = 6.5e-4, 4e-4
@@ -75,15 +76,17 @@ class Encoder:
         self.rate: float | None = None
         self.starts = goal.in_space
         turns = goal.in_space and max_error == inf
-        known = turns and self.parts.min(initial=1) >= 1  # its steps are too coarse for closer ones
-        self.turn(known=known and is_known(self.measure, stream.columns, self.values), orders=turns)
-        if self.known and skeleton is not None:
+        known = turns and is_known(self.measure, stream.columns, self.values)
+        self.usual = np.ones(self.measure.points)
+        if known and skeleton is not None:
             names = [joint.name for joint in skeleton.joints]
             self.shares = np.array(
                 [_SHARES.get(*each) for each in zip(names, self.shares, strict=True)]
             )
-            usual = [_WEIGHTS.get(name, 1.0) for name in names]
-            self.weigh(self.weights * np.array(usual))
+            self.usual = np.array([_WEIGHTS.get(name, 1.0) for name in names])
+            self.usual /= self.usual.mean()
+            self.weights *= self.usual
+        self.turn(known=known, orders=turns)
 
     def turn(self, *, known: bool, orders: bool) -> None:
         """Let curves turn as the known figure's do, or, by `orders`, as is best for each joint."""
@@ -129,19 +132,24 @@ class Encoder:
 
     def _levers(self) -> NDArray[np.int64]:
         """Give what each channel's step is coarser than the scale, (C,) in 64ths of an octave."""
-        if self.known:
-            return np.array(_core.near_figure()[0], np.int64)
         frames = self.values[:: max(1, len(self.values) // _SAMPLE)]
         moderate = np.where(np.abs(frames) < 1e9, frames, 0.0)
         turned = _core.near_turned(self.measure.core, moderate, self.turnings)
         squares = _core.near_levers(self.curves, turned, self.weights)
         with np.errstate(divide="ignore"):
             levers = 0.5 * np.log2(squares)
-        # A channel that moves nothing has the step of one that moves a little.
-        known = np.isfinite(levers) & (squares > 1e-8)
-        levers[~known] = levers[known].min(initial=0.0)
+        told = np.isfinite(levers) & (squares > 1e-8)
+        if self.known:
+            usual = _core.near_levers(self.curves, turned, self.usual)
+            levers[told] -= 0.5 * np.log2(usual[told])
+            levers[~told] = 0
+        else:  # a channel that moves nothing has the step of one that moves a little
+            levers[~told] = levers[told].min(initial=0.0)
         exponents: NDArray[np.int64] = np.rint(-levers * STEPS_PER_OCTAVE / COARSE).astype(np.int64)
-        return exponents * COARSE
+        exponents *= COARSE
+        if self.known:
+            exponents += np.array(_core.near_figure()[0])
+        return exponents
 
     def _shares(self, skeleton: Skeleton | None) -> NDArray[np.float64]:
         """Give by how much the mean of each point may be above that of all, (P,)."""

@@ -13,7 +13,8 @@ from mocapress.records import Reader, Writer
 
 STEPS_PER_OCTAVE = 64
 COARSE = 32
-"""Steps of channels lie so many 64ths of an octave apart."""
+"""Steps of channels lie so many 64ths of an octave apart; those of the known figure lie so many, or
+a multiple of it, from its own."""
 
 
 class Joints(NamedTuple):
@@ -69,7 +70,8 @@ def pack_header(
     knot
         The step of knots in eighths.
     steps
-        Of each channel, as an exponent of 2^(1/64); they differ by multiples of 32.
+        Of each channel, as an exponent of 2^(1/64); they differ by multiples of 32, or their
+        distances from the known figure's do.
     joints
         Of the channels.
     turnings
@@ -79,9 +81,15 @@ def pack_header(
     start
         With which of the learned starts coders begin, from 1 on; 0 for none.
     known
-        Whether the figure is the known one: then steps are its own, beside the first of them.
+        Whether the figure is the known one.
 
     """
+    base = steps[0] if steps else 0
+    finer: list[int] = []
+    if known:
+        below = np.array(_core.near_figure()[0]) - steps
+        base = -int(np.sort(below)[len(below) // 2])
+        finer = np.diff((below + base) // COARSE, prepend=0).tolist()
     writer = Writer()
     writer.numbers([_rounded_up(error) for error in errors])
     writer.integer(
@@ -89,13 +97,15 @@ def pack_header(
         + (0 if short_spans else 2)
         + (4 if radians else 0)
         + (8 if known else 0)
+        + (16 if any(finer) else 0)
     )
     writer.integer(knot - 1)
-    base = steps[0] if steps else 0
-    writer.signed(base - _core.near_figure()[0][0] if known else base)
+    writer.signed(base)
     writer.integer(start)
     if known:
         writer.integer(sum(each[4] << i for i, each in enumerate(turnings)))
+        if any(finer):
+            writer.bytes(_core.near_finer(finer))
         return bytes(writer.data)
     apart = np.diff(np.array(steps, np.int64), prepend=base) // COARSE
     writer.bytes(_core.near_columns(apart.tolist(), joints.of_column, joints.parents, turnings))
@@ -113,7 +123,7 @@ def unpack_errors(header: bytes) -> tuple[bool, float, float]:
     """
     reader = Reader(header, "header of near")
     mean, largest = reader.numbers(2)
-    return reader.integer(15) % 2 == 1, mean, largest
+    return reader.integer(31) % 2 == 1, mean, largest
 
 
 def _rounded_up(error: float) -> float:
