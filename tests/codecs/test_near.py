@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 
 import mocapress as mp
 from mocapress.codecs import Codec
+from mocapress.codecs.near.encoding import Encoder
 from mocapress.codecs.near.figure import figure_of
-from mocapress.codecs.near.goal import goal_of
+from mocapress.codecs.near.goal import Goal, goal_of
 from mocapress.describe import describe_mcz
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Joint, Skeleton
 from mocapress.motion.kinematics import positions, rotations
 from mocapress.motion.units import Amount, amount, figure_size
+from mocapress.records import Reader
 from mocapress.source import Source
 
 Values = NDArray[np.float64]
@@ -101,6 +103,38 @@ def test_parts_of_the_body_keep_bounds_of_their_own(
     for joint, found in zip(clip.skeleton.names, largest, strict=True):
         assert found <= bounds.get(joint, 0.1), joint
     assert largest[clip.skeleton.index(head)] > 0.1
+
+
+def test_joints_that_weigh_more_have_finer_steps(samples: Path) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")[:300]
+    assert clip.skeleton is not None
+    goal = Goal(True, 0.1 / CMU, radius=3 / CMU, size=figure_size(clip.skeleton))
+    encoder = Encoder(goal, inf, 4096, clip.main, clip.skeleton)
+    hand = clip.skeleton.index("lhand")
+    assert encoder.known
+    before = encoder.chunks(0.25 / CMU, encoder.most)[1].mean(axis=0)
+    weights = encoder.weights.copy()
+    weights[hand] *= 100
+    encoder.weigh(weights)
+    after = encoder.chunks(0.25 / CMU, encoder.most)[1].mean(axis=0)
+    assert (after / after.mean())[hand] < 0.7 * (before / before.mean())[hand]
+
+
+def test_steps_that_differ_from_the_known_figures_are_checked(samples: Path) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")[:40]
+    codec = mp.codec("near:max=0.1cm,feet=0.02cm")
+    encoded = codec.encode(clip.main, skeleton=clip.skeleton)
+    reader = Reader(encoded.header, "header of near")
+    reader.numbers(2)
+    assert reader.integer(31) & 24 == 24  # the known figure, with steps of its own
+    for bit in range(8 * len(encoded.header)):
+        header = bytearray(encoded.header)
+        header[bit // 8] ^= 1 << bit % 8
+        try:
+            decoded = codec.decode(bytes(header), encoded.chunks, clip.columns)
+        except mp.CorruptError:
+            continue
+        assert decoded.shape == clip.values.shape
 
 
 @pytest.mark.parametrize("seed", range(8))
