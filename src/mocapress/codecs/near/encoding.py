@@ -18,11 +18,11 @@ from mocapress.motion import Skeleton, Stream
 _MOST_STEP = 4096
 SCALE_OF_MEAN = 2.5
 """Where the search for a mean begins."""
-_INNER, _NEXT, _OUTER = 1.05, 1.15, 1.5
+_INNER, _NEXT, _OUTER = 1.04, 1.15, 1.5
 """Means of joints may be so many times that of all; of those without further joints the last, of
 those that such a joint follows the one before."""
-_SIDES = {"foot": 1.12, "wrist": 1.08, "hand": 1.28, "thumb": 1.4}
-_SHARES = {"upperneck": 1.05, "head": 1.32} | {f"{s}{j}": _SIDES[j] for s in "lr" for j in _SIDES}
+_SIDES = {"foot": 1.1, "wrist": 1.06, "hand": 1.27, "thumb": 1.36}
+_SHARES = {"upperneck": 1.04, "head": 1.28} | {f"{s}{j}": _SIDES[j] for s in "lr" for j in _SIDES}
 """The same of joints of the known figure, of which ACL's means are smaller than that."""
 _WEIGHTS = {"upperneck": 2.0, "head": 1.5} | {
     side + joint: weight

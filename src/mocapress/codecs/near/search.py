@@ -20,7 +20,7 @@ _BOUNDED, _CLOSELY_BOUNDED, _LONG = 3, 2, 10
 _CLOSE = 3.5
 """Bounds below so many times the mean are close: spans have to be coded again and again."""
 _NEAR_ENOUGH = 0.01
-_HASTE = 1.2
+_HASTE = 1.6
 _DEAR = 0.3
 """What the worst joint's excess counts beside the bytes, both as logarithms."""
 _WINDOW = 512
