@@ -84,6 +84,7 @@ struct Plan {
   std::vector<Turning> turnings;
   std::vector<double> firsts;  // what channels begin near to; nothing for 0
   bool radians = false;
+  std::vector<std::size_t> order;  // of the file's columns, which each is; nothing for 0, 1, ...
 
   double first_of(std::size_t column) const { return firsts.empty() ? 0 : firsts[column]; }
 };

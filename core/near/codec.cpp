@@ -172,17 +172,48 @@ void turn_back(double* values, std::size_t frames, const Plan& plan,
 
 namespace {
 
+std::vector<std::int64_t> read_differences(ByteView bytes, std::size_t columns) {
+  RangeReading side(bytes);
+  std::vector<std::int64_t> apart(columns);
+  code_differences(side, apart);
+  if (!side.exhausted()) fail("differences of columns are cut off, too long, or cannot be");
+  return apart;
+}
+
 // What a clip has finer, or coarser, than the known figure.
 void make_finer(ByteView bytes, std::vector<std::int64_t>& exponents) {
-  RangeReading side(bytes);
-  std::vector<std::int64_t> apart(exponents.size());
-  code_finer(side, apart);
-  if (!side.exhausted()) fail("how much finer steps are is cut off, too long, or cannot be");
+  const std::vector<std::int64_t> apart = read_differences(bytes, exponents.size());
   std::int64_t finer = 0;
   for (std::size_t c = 0; c < apart.size(); ++c) {
     if (apart[c] < -kMostExponent || apart[c] > kMostExponent) fail("steps out of bounds");
     finer += apart[c];
     exponents[c] -= 32 * finer;
+  }
+}
+
+// Which of the file's columns each is.
+std::vector<std::size_t> read_order(ByteView bytes, std::size_t columns) {
+  const auto count = static_cast<std::int64_t>(columns);
+  std::vector<std::size_t> order;
+  std::vector<bool> seen(columns);
+  std::int64_t place = -1;
+  for (const std::int64_t skipped : read_differences(bytes, columns)) {
+    if (skipped < -count || skipped > count) fail("columns out of bounds");
+    place += skipped + 1;
+    if (place < 0 || place >= count || seen[static_cast<std::size_t>(place)]) {
+      fail("columns in no order");
+    }
+    seen[static_cast<std::size_t>(place)] = true;
+    order.push_back(static_cast<std::size_t>(place));
+  }
+  return order;
+}
+
+void put_in_order(double* values, std::size_t frames, const std::vector<std::size_t>& order) {
+  std::vector<double> row(order.size());
+  for (std::size_t f = 0; f < frames; ++f, values += row.size()) {
+    for (std::size_t c = 0; c < row.size(); ++c) row[order[c]] = values[c];
+    std::copy(row.begin(), row.end(), values);
   }
 }
 
@@ -192,7 +223,7 @@ Plan read_header(ByteView header, std::size_t columns) {
   Record record(header);
   Plan plan;
   record.numbers(2);  // how far the clip was found to be off: for readers, not for decoding
-  const std::int64_t flags = record.integer(31);
+  const std::int64_t flags = record.integer(63);
   plan.short_spans = (flags & 2) == 0;
   plan.radians = (flags & 4) != 0;
   plan.knot = static_cast<double>(record.integer(63) + 1) / 8;
@@ -208,6 +239,7 @@ Plan read_header(ByteView header, std::size_t columns) {
     }
   };
   if (known) {
+    if ((flags & 32) != 0) fail("the known figure in another order");
     const Figure& figure = known_figure();
     if (columns != figure.exponents.size()) fail("the known figure has other columns");
     const std::int64_t nearest = record.integer((1 << figure.turnings.size()) - 1);
@@ -225,6 +257,7 @@ Plan read_header(ByteView header, std::size_t columns) {
     return plan;
   }
   if ((flags & 16) != 0) fail("steps of a figure that is not known");
+  if ((flags & 32) != 0) plan.order = read_order(record.bytes(), columns);
   RangeReading side(record.bytes());
   record.end();
   std::vector<std::int64_t> apart(columns);
@@ -243,6 +276,7 @@ Plan read_header(ByteView header, std::size_t columns) {
 
 void decode(ByteView payload, double* values, std::size_t frames, const Plan& plan) {
   Decoding(payload, values, frames, plan).run();
+  if (!plan.order.empty()) put_in_order(values, frames, plan.order);
 }
 
 }  // namespace mocapress::near

@@ -45,10 +45,10 @@ void code_turnings(Side& side, const Joints& joints, std::vector<Turning>& turni
   }
 }
 
-// By how many times 32/64 octaves each step of the known figure is finer than its own, beyond the
-// column before.
+// For each column a number that is 0 for most: by how many times 32/64 octaves its step is finer than
+// that of the known figure, beyond the column before; or how many columns of the file it skips.
 template <class Side>
-void code_finer(Side& side, std::vector<std::int64_t>& apart) {
+void code_differences(Side& side, std::vector<std::int64_t>& apart) {
   Difference<6> differences;
   for (std::int64_t& each : apart) each = differences.code(side, each);
 }

@@ -20,6 +20,8 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // Numbers beyond so many steps are kept as they are.
 constexpr double kMostSteps = 1e8;
+// In units of columns; no motion has larger ones.
+constexpr double kMostMotion = 1e9;
 
 class Encoding {
  public:
@@ -33,8 +35,12 @@ class Encoding {
         file_measure_(measure),
         whole_(values, values + frames * channels_),
         moves_(channels_),
+        turns_(channels_),
         steps_(task.plan.steps),
         bounds_(measure_, steps_, task.most, task.value_most) {
+    for (const Turning& turning : task.plan.turnings) {
+      for (std::size_t c = turning.first; c < turning.first + 3; ++c) turns_[c] = true;
+    }
     fill_gaps();
     wanted_ = turned(whole_, task.plan);
     for (std::size_t i = 0; i < wanted_.size(); ++i) {
@@ -54,6 +60,10 @@ class Encoding {
     Coded coded;
     curves();
     turn_back(drawn_.data(), frames_, task_.plan, starts_);
+    // Errors are those of the figure as it stands with what is kept, if that is a motion at all.
+    for (std::size_t i = 0; i < whole_.size(); ++i) {
+      if (std::fabs(given_[i]) < kMostMotion) whole_[i] = given_[i];
+    }
     const std::vector<Kept> kept = keep();
     Marks marks(side_, frames_, channels_);
     marks.corrections(corrections_, [](const Correction&) {});
@@ -176,9 +186,10 @@ class Encoding {
   void whole_span(std::size_t first, int length, std::size_t count) {
     prediction_.begin_span(length);
     for (std::size_t i = 0; i < coder_.channels.size(); ++i) span(i, first, length, count);
-    // What is kept anyway has no error that others may make good.
+    // What is kept anyway has no error that others may make good. Of a joint whose curves turn in
+    // another order, a number that is kept is none of a curve.
     for (std::size_t i = first * channels_; i < (first + count) * channels_; ++i) {
-      if (!is_usable(i)) drawn_[i] = wanted_[i];
+      if (!turns_[i % channels_] && !is_usable(i)) drawn_[i] = wanted_[i];
     }
   }
 
@@ -328,6 +339,7 @@ class Encoding {
     for (std::size_t i = 0; i < keeps.size(); ++i) {
       const double error = std::fabs(given_[i] - drawn_[i]);
       keeps[i] = !is_usable(i) || !(error <= task_.value_most[i % channels_]);
+      if (keeps[i] != 0) drawn_[i] = whole_[i];  // what others made good of it goes with its error
     }
     std::vector<double> errors(task_.most.size());
     for (std::size_t f = 0; f < frames_ && bounds_.any(); ++f) {
@@ -357,7 +369,7 @@ class Encoding {
   std::vector<double> whole_;    // what is to be decoded, without gaps
   std::vector<double> wanted_;   // what the curves are to be
   std::vector<float> raised_;    // how much more errors cost in a span
-  std::vector<bool> moves_;
+  std::vector<bool> moves_, turns_;
   const std::vector<double>& steps_;
   Bounds bounds_;
   std::vector<double> costs_;

@@ -97,7 +97,9 @@ std::tuple<nb::bytes, Given<double, 2>, Given<double, 2>> encode(
   if (kept.shape(0) != frames || kept.shape(1) != channels) {
     throw std::invalid_argument("what is kept of other values");
   }
-  const near::Task task{near::read_header(view(header), channels),
+  near::Plan plan = near::read_header(view(header), channels);
+  plan.order.clear();  // the columns come as they are coded
+  const near::Task task{std::move(plan),
                         scale,
                         rate,
                         tries_knots,
@@ -250,9 +252,9 @@ nb::bytes columns(std::vector<std::int64_t> apart, std::vector<std::int32_t> joi
   return to_python(side.finish());
 }
 
-nb::bytes finer(std::vector<std::int64_t> apart) {
+nb::bytes differences(std::vector<std::int64_t> apart) {
   RangeWriting side;
-  near::code_finer(side, apart);
+  near::code_differences(side, apart);
   return to_python(side.finish());
 }
 
@@ -320,8 +322,8 @@ void bind_near(nb::module_& module) {
              "Give the errors of joints, (F, J), or without a skeleton of values, (F, C).");
   module.def("near_columns", &columns, nb::arg("apart"), nb::arg("joints"), nb::arg("parents"),
              nb::arg("turnings"), "Code what columns have of their own, for the header.");
-  module.def("near_finer", &finer, nb::arg("apart"),
-             "Code how much finer the known figure's steps are than usual, for the header.");
+  module.def("near_differences", &differences, nb::arg("apart"),
+             "Code a number for each column, 0 for most, for the header.");
   nb::class_<Learning>(module, "NearLearning", "Learns what coders of `near` begin with.")
       .def(
           nb::init<const std::vector<Learning::Told>&, std::uint64_t>(), nb::arg("assumed"),

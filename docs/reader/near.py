@@ -4,6 +4,7 @@ import math
 import struct
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from itertools import accumulate
 
 from exact_functions import sine_cosine
 from near_starts import Start, known_figure, start_of, step_of
@@ -294,13 +295,18 @@ class Header:
         self.knot = (record.integer() + 1) / 8
         exponent, start = record.signed(), record.integer()
         self.start = start_of(start - 1, known, tuple(CHANCES.items())) if start else None
-        self.firsts = [0.0] * columns
+        self.firsts, self.order = [0.0] * columns, list(range(columns))
         if known:
-            self.take_known(exponent, record.integer(), columns)
-            if flags & 16:
-                self.make_finer(Coded(record.bytes()))
+            nearest = record.integer()
+            finer = differences(record.bytes(), columns) if flags & 16 else [0] * columns
             record.end()
+            self.take_known(exponent, nearest, finer)
             return
+        if flags & 32:
+            skipped = differences(record.bytes(), columns)
+            self.order = [each + c for c, each in enumerate(accumulate(skipped))]
+            if sorted(self.order) != list(range(columns)):
+                raise CorruptError("columns in no order")
         stream, lengths = Coded(record.bytes()), tree(7)
         record.end()
         again, backs, same = [Bit(), Bit()], tree(6), False
@@ -318,28 +324,23 @@ class Header:
         self.turnings = take_turnings(stream, self.joints)
         stream.end()
 
-    def take_known(self, exponent: int, nearest: int, columns: int) -> None:
-        """Take what the known figure has."""
+    def take_known(self, exponent: int, nearest: int, finer: list[int]) -> None:
+        """Take what the known figure has, but for steps that are finer."""
         figure = known_figure()
-        if len(figure.exponents) != columns:
+        if len(figure.exponents) != len(finer):
             raise CorruptError("the known figure has other columns")
-        self.exponents = [exponent + each for each in figure.exponents]
-        self.steps = [step_of(each) for each in self.exponents]
+        exponents = [
+            exponent + own - 32 * each
+            for own, each in zip(figure.exponents, accumulate(finer), strict=True)
+        ]
+        if not all(-4096 <= each <= 4096 for each in exponents):
+            raise CorruptError("a step out of bounds")
+        self.steps = [step_of(each) for each in exponents]
         self.joints, self.parents, self.firsts = figure.joints, figure.parents, figure.firsts
         self.turnings = [
             replace(turning, nearest_to_zero=bool(nearest >> i & 1))
             for i, turning in enumerate(figure.turnings)
         ]
-
-    def make_finer(self, stream: Coded) -> None:
-        """Take by how much steps are finer than the known figure's."""
-        lengths, finer = tree(6), 0
-        for column, exponent in enumerate(self.exponents):
-            finer += difference(stream, lengths)
-            if not -4096 <= exponent - 32 * finer <= 4096:
-                raise CorruptError("a step out of bounds")
-            self.steps[column] = step_of(exponent - 32 * finer)
-        stream.end()
 
     def above(self, joint: int) -> int:
         """Give the parent of a joint."""
@@ -674,6 +675,14 @@ class Chunk:
                 frame += 1
 
 
+def differences(stream: bytes, columns: int) -> list[int]:
+    """Take a number for each column."""
+    coded, lengths = Coded(stream), tree(6)
+    found = [difference(coded, lengths) for _ in range(columns)]
+    coded.end()
+    return found
+
+
 def count(stream: Coded, lengths: list[Bit]) -> int:
     """Take a number of 0 or more."""
     return magnitude(stream, symbol(stream, lengths)) - 1
@@ -687,4 +696,6 @@ def decode(
 ) -> list[list[float]]:
     """Give the rows of chunks; of the number formats, only how many there are counts."""
     read = Header(header, len(formats))
-    return [row for frames, payload in chunks for row in Chunk(payload, frames, read).decode()]
+    rows = [row for frames, payload in chunks for row in Chunk(payload, frames, read).decode()]
+    back = sorted(range(len(formats)), key=read.order.__getitem__)
+    return [[row[place] for place in back] for row in rows]

@@ -417,10 +417,8 @@ def near_errors(measure: NearMeasure, values: Annotated[NDArray[numpy.float64], 
 def near_columns(apart: Sequence[int], joints: Sequence[int], parents: Sequence[int], turnings: Sequence[Sequence[int]]) -> bytes:
     """Code what columns have of their own, for the header."""
 
-def near_finer(apart: Sequence[int]) -> bytes:
-    """
-    Code how much finer the known figure's steps are than usual, for the header.
-    """
+def near_differences(apart: Sequence[int]) -> bytes:
+    """Code a number for each column, 0 for most, for the header."""
 
 class NearLearning:
     """Learns what coders of `near` begin with."""

@@ -137,6 +137,70 @@ def test_steps_that_differ_from_the_known_figures_are_checked(samples: Path) -> 
         assert decoded.shape == clip.values.shape
 
 
+def test_columns_may_stand_before_those_of_joints_above(samples: Path) -> None:
+    """Errors can be made good further down only, so that columns are coded from the root on."""
+    clip = mp.read(samples / "cmu_01_01.amc")[:300]
+    codec = mp.codec("near:max=0.1cm")
+    by_name = sorted(range(clip.channels), key=lambda c: clip.columns[c].name)
+    columns = tuple(clip.columns[c] for c in by_name)
+    other = Clip.of(clip.values[:, by_name], columns, None, clip.skeleton)
+    encoded = codec.encode(other.main, skeleton=clip.skeleton)
+    decoded = other.with_values(codec.decode(encoded.header, encoded.chunks, columns))
+    assert joint_errors(other, decoded, 3 / CMU).max() * CMU <= 0.1
+    any_figure = replace(clip.columns[0], name="other")
+    ordered = codec.encode(
+        clip.with_columns((any_figure, *clip.columns[1:])).main, skeleton=clip.skeleton
+    )
+    size, usual = (sum(len(c.payload) for c in each.chunks) for each in (encoded, ordered))
+    assert size < 1.05 * usual
+    for bit in range(8 * len(encoded.header)):
+        header = bytearray(encoded.header)
+        header[bit // 8] ^= 1 << bit % 8
+        try:
+            damaged = codec.decode(bytes(header), encoded.chunks, columns)
+        except mp.CorruptError:
+            continue
+        assert damaged.shape == clip.values.shape
+
+
+@pytest.mark.parametrize(
+    ("digits", "asked"), [(2, "0.1cm"), (6, "0.1cm"), (6, "0.003cm"), (6, "0.0001cm")]
+)
+def test_text_that_comes_back_keeps_the_bound(
+    samples: Path, tmp_path: Path, digits: int, asked: str
+) -> None:
+    source = tmp_path / "cmu_01_01.amc"
+    clip = mp.read(samples / "cmu_01_01.amc")[:60]
+    mp.write(clip.with_values(np.round(clip.values, digits)), source)
+    (tmp_path / "cmu_01_01.asf").write_bytes((samples / "cmu_01_01.asf").read_bytes())
+    clip = mp.read(source)
+    blob = mp.compress(source, f"near:max={asked}", asf_path=tmp_path / "cmu_01_01.asf")
+    source.write_bytes(mp.decompress(blob))
+    back = mp.read(source)
+    errors = joint_errors(clip, back, 3 / CMU).max() * CMU
+    assert 0 < errors <= float(asked.removesuffix("cm"))
+
+
+@pytest.mark.parametrize("most", ["1e25", "1e-6", "1e-8", "1e-12", "1e-25"])
+def test_bounds_beyond_any_use_are_kept(samples: Path, most: str) -> None:
+    clip = mp.read(samples / "cmu_01_01.amc")[:40]
+    decoded = decoded_by(mp.codec(f"near:max={most}cm"), clip)
+    assert joint_errors(clip, decoded, 3 / CMU).max() * CMU <= float(most)
+
+
+@pytest.mark.parametrize("most", ["1e-6", "1e-12"])
+def test_a_bound_so_close_that_near_takes_more_ends_in_the_smallest(
+    samples: Path, most: str
+) -> None:
+    path = samples / "cmu_01_01.amc"
+    asf = samples / "cmu_01_01.asf"
+    lines = path.read_bytes().splitlines(keepends=True)[:3000]
+    data = b"".join(lines[: max(i for i, line in enumerate(lines) if line.strip().isdigit())])
+    blob = mp.compress(data, f"near:max={most}cm", asf_path=asf)
+    assert mp.decompress(blob) == data
+    assert len(blob) <= len(mp.compress(data, asf_path=asf))
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_any_joints_of_any_skeleton_keep_their_bounds(seed: int) -> None:
     random = np.random.default_rng(seed)

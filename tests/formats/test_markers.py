@@ -172,3 +172,13 @@ def test_near_counts_whole_numbers_in_the_unit_that_the_file_states() -> None:
     assert (found.valid == original.valid).all()
     away = np.linalg.norm(found.positions - original.positions, axis=2)
     assert 1 < away[original.valid].max() <= 4.1
+
+
+def test_near_rounds_whole_numbers_to_the_nearest() -> None:
+    points, words, analog = walk(floats=False)
+    made = c3d(points, words, analog, processor=INTEL, floats=False, samples=4)  # tenths
+    blob = mp.compress(made, "near:max=4mm")
+    decoded, found = mp.markers(mp.load(blob)), mp.markers(mp.read(mp.decompress(blob)))
+    assert (found.valid == decoded.valid).all()
+    rounding = np.abs(found.positions - decoded.positions)[found.valid]
+    assert 0 < rounding.max() <= 0.05 + 1e-9

@@ -22,6 +22,15 @@ def resting() -> bytes:
     return _amc(range(360, 396), (), {(i, bone): "1 2 3" for i in range(36) for bone in still})
 
 
+def unordered() -> bytes:
+    """Give the same, its bones in the order of their names: hands stand before their arms."""
+    head, _, body = skeleton().decode().partition("\n1\n")
+    lines = [head]
+    for i, frame in enumerate(_frames("1\n" + body)):
+        lines += [str(i + 1), *sorted(frame.splitlines())]
+    return "\n".join([*lines, ""]).encode()
+
+
 def leaps() -> bytes:
     """Give some bones in frames far apart, here and there with angles that no motion has."""
     bones = ("root", "lowerback", "upperback", "thorax", "lowerneck", "upperneck", "head")

@@ -140,6 +140,11 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
         "near:max=0.1cm,feet=0.02cm",
         {"asf_path": clips.SAMPLE.with_suffix(".asf")},
     ),
+    "v1_unordered_near.amc": (
+        clips.unordered(),
+        "near:max=0.1cm,chunk=20",
+        {"asf_path": clips.SAMPLE.with_suffix(".asf")},
+    ),
     "v1_resting_near.amc": (
         clips.resting(),
         "near:max=0.1cm",

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import PurePath
 
 from mocapress import codecs
-from mocapress.api.encoding import coded, stored_skeleton
+from mocapress.api.encoding import as_printed, coded, stored_skeleton
 from mocapress.api.opening import Opened
 from mocapress.codecs import DEFAULT_CODEC, Codec, Model
 from mocapress.codecs.loss import Loss, checked_loss
@@ -49,6 +49,8 @@ def compress_clip(
         alone, own = Clip({name: stream}, clip.skeleton), model if index == 0 else None
         way = made if index == 0 or made.lossless else codecs.codec(DEFAULT_CODEC)
         encoded = way.encode(stream, skeleton=clip.skeleton, model=own)
+        if not way.lossless:
+            alone = as_printed(alone, way, encoded)
         head, of_stream = coded(alone, name, index, way, encoded, own)
         heads.append(head)
         chunks += of_stream

@@ -116,6 +116,16 @@ def coded_streams(
     return made
 
 
+def as_printed(clip: Clip, codec: Codec, encoded: Encoded) -> Clip:
+    """Give a clip that was coded with digits enough to print what a lossy codec made of it."""
+    more = codec.more_digits(clip, encoded)
+    columns = (
+        replace(column, decimal=column.decimal and column.decimal.finer(more))
+        for column in clip.columns
+    )
+    return clip.with_columns(tuple(columns))
+
+
 def placed(columns: Sequence[Column]) -> tuple[Column, ...]:
     """Give columns whose joints are numbered in the order of appearance."""
     places: dict[int, int] = {}

@@ -118,6 +118,9 @@ def pieces(opened: Opened, original: Original) -> Iterator[bytes]:
     else:
         lossless = opened.codec().lossless
         parts = _printed_parts(opened, original)
+        completed = formats.by_id(original.format).completed
+        if completed and not lossless:
+            parts = iter((completed(b"".join(parts)),))
     made = hashlib.sha256()
     for part in parts:
         made.update(part)

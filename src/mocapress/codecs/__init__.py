@@ -136,6 +136,8 @@ def codec(text: str) -> Codec:
                 expected=", ".join(f"{parameter}=…" for parameter in known),
                 found=repr(item),
             )
+        if key in values:
+            raise ParameterError(f"{name}:{key}", expected="it once", found="it again")
         values[key] = _parse(known[key], value, f"{name}:{key}")
     made: Codec = cls(**values)
     return made

@@ -60,6 +60,8 @@ class Capabilities:
     """Whether it can write a clip as DiffMA JSON."""
     names: bool = False
     """Whether it looks at the names of markers."""
+    stands_back: bool = False
+    """Whether a lossless codec stands in for it where that takes no more bytes."""
     measured: bool = False
     """Whether there is more to say of what it coded than sizes."""
 
@@ -281,6 +283,10 @@ class Codec(ABC):
     def largest_errors(self, columns: Sequence[Column]) -> list[float]:
         """Give the error up to which each column may come back; infinite where none was asked."""
         return [0.0 if self.lossless else inf] * len(columns)
+
+    def more_digits(self, clip: Clip, encoded: Encoded) -> int:
+        """Give how many more digits than their source has numbers need to keep bounds as text."""
+        return 0
 
     def parts_of(self, clip: Clip) -> dict[str, list[int]]:
         """Give the parts of the body that have bounds of their own: name -> joints, or markers."""

@@ -87,7 +87,7 @@ class Shape(NamedTuple):
         with np.errstate(invalid="ignore", over="ignore"):
             if not self.floats:
                 inside = np.where(np.abs(values) <= 2**15, values, 0)
-                return inside.astype(np.int64).astype(np.uint16)
+                return np.rint(inside).astype(np.int64).astype(np.uint16)
             scaled = values * 4 if self.processor == _DEC else values
             return scaled.astype(np.float32).view(np.uint32)
 

@@ -138,6 +138,8 @@ class Format:
     """
     read_layout: Callable[[bytes], StoredLayout] | None = None
     """Reads the record of a layout of the format's own. Without it, layouts are those of rows."""
+    completed: Callable[[bytes], bytes] | None = None
+    """Puts right what a file says of its numbers, where a lossy codec has changed these."""
     describe: Callable[[Any, Clip, Near], Clip] | None = None
     """Gives streams as they are stored the names and units that such a layout knows, or a file
     beside. Raises ``FormatError`` where that file does not fit; it is then left away."""

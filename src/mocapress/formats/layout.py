@@ -121,6 +121,23 @@ class Layout:
             yield part
         yield self.tail
 
+    def of_other_numbers(self, values: NDArray[np.float64]) -> "Layout":
+        """Give the layout for other numbers than these, (F, C).
+
+        They are printed as their columns are; what is no number stays as it is written.
+        """
+        columns = [
+            self.templates[self.assigned[row]].columns[slot]
+            for row, slot in zip(self.cell_rows.tolist(), self.cell_slots.tolist(), strict=True)
+        ]
+        keep = ~np.isfinite(values[self.cell_rows.astype(np.int64), columns])
+        return replace(
+            self,
+            cell_rows=self.cell_rows[keep],
+            cell_slots=self.cell_slots[keep],
+            cells=tuple(compress(self.cells, keep)),
+        )
+
     def rows(self, keep: NDArray[np.bool_]) -> "Layout":
         """Give the layout of those rows alone that are to be kept, (F,)."""
         cells = keep[self.cell_rows.astype(np.int64)]

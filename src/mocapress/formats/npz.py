@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mocapress.formats.array_layout import read_layout
 from mocapress.formats.array_splitting import split_npz
 from mocapress.formats.contract import Format
+from mocapress.formats.npz_digests import with_right_digests
 from mocapress.formats.table_writing import with_frames
 from mocapress.motion import Clip, Stream
 from mocapress.motion.markers import POINTS, RESIDUALS, Markers, markers
@@ -65,6 +66,7 @@ FORMAT = Format(
     recognises=lambda head: head.startswith(b"PK\x03\x04") and b".npy" in head[30:286],
     split=split_npz,
     read_layout=partial(read_layout, kind="npz"),
+    completed=with_right_digests,
     fit=with_frames,
     write=write,
     any_columns=True,

@@ -1,7 +1,13 @@
 """How a source printed the numbers of a column."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+_MOST_DIGITS = 17
+"""So many tell any float64."""
 
 
 class NumberKind(IntEnum):
@@ -66,6 +72,35 @@ class NumberFormat:
     end_point: bool = False
     java: bool = False
     javascript: bool = False
+
+    def finer(self, more: int) -> "NumberFormat":
+        """Give this format with so many more digits; the shortest where these tell any float64."""
+        if more == 0 or self.kind == NumberKind.SHORTEST:
+            return self
+        if self.kind == NumberKind.SHORTEST32 or self.digits + more > _MOST_DIGITS:
+            return NumberFormat(NumberKind.SHORTEST)
+        return replace(self, digits=self.digits + more)
+
+    def rounded(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Give what values are once they are printed, but for ties."""
+        match self.kind:
+            case NumberKind.SHORTEST:
+                return values
+            case NumberKind.SHORTEST32:
+                with np.errstate(over="ignore"):
+                    return values.astype(np.float32).astype(np.float64)
+            case NumberKind.FIXED | NumberKind.TRIMMED:
+                decimals = np.full(values.shape, float(self.digits))
+            case _:
+                significant = self.digits + (self.kind == NumberKind.SCIENTIFIC)
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    decimals = significant - 1 - np.floor(np.log10(np.abs(values)))
+        # Beyond this a float64 has no such digits, or the number is 0 or none.
+        known = np.isfinite(values) & (np.abs(decimals) < 300)
+        scale = 10.0 ** np.where(known, decimals, 0)
+        with np.errstate(over="ignore"):
+            grid = np.rint(values * scale)
+            return np.where(known & np.isfinite(grid), grid / scale, values)
 
     def __str__(self) -> str:
         """Say in words how the numbers look, without the finer points."""

@@ -23,16 +23,20 @@ from mocapress.codecs.contract import (
 from mocapress.codecs.markers import markers_of
 from mocapress.codecs.near.encoding import Encoder
 from mocapress.codecs.near.figure import figure_of
-from mocapress.codecs.near.goal import Goal, goal_of
+from mocapress.codecs.near.goal import WITHIN, Goal, Measure, goal_of
 from mocapress.codecs.near.header import unpack_errors
 from mocapress.codecs.near.parts import amounts, joints_of_parts
 from mocapress.codecs.near.search import EFFORTS, encode
 from mocapress.errors import ParameterError
 from mocapress.motion import Clip, Column, Skeleton, Stream
+from mocapress.motion.number_format import NumberFormat, NumberKind
 from mocapress.motion.units import amount
 
 _MOST_FRAMES = 1 << 20
 _QUALITIES = range(1, 10)
+_MOST_MORE_DIGITS = 17
+_OF_MEAN = 0.02
+"""Of the mean error, what rounding of printed numbers may add to any."""
 _ASSUMED_RATE = 120.0
 """Frames a second of a clip that states none, such as an AMC."""
 
@@ -49,7 +53,11 @@ class Near(Codec):
 
     id: ClassVar[str] = "near"
     can: ClassVar[Capabilities] = Capabilities(
-        lossless=False, names=True, bounds=frozenset({Bound.LARGEST}), measured=True
+        lossless=False,
+        names=True,
+        bounds=frozenset({Bound.LARGEST}),
+        stands_back=True,
+        measured=True,
     )
 
     max: str = ""
@@ -178,6 +186,27 @@ class Near(Codec):
     def largest_errors(self, columns: Sequence[Column]) -> list[float]:
         """Give the error up to which each column may come back; infinite where none was asked."""
         return [self.max_error] * len(columns)
+
+    def more_digits(self, clip: Clip, encoded: Encoded) -> int:
+        """Give how many more digits than their source has numbers need to keep bounds as text.
+
+        Rounding may take what the encoder leaves of the bounds, or a small part of the mean error.
+        """
+        formats = [column.decimal or NumberFormat(NumberKind.SHORTEST) for column in clip.columns]
+        if not encoded.chunks or all(each.kind == NumberKind.SHORTEST for each in formats):
+            return 0
+        goal = self.goal(clip.skeleton, clip.columns, clip.values)
+        measure = Measure(goal, figure_of(clip.skeleton, clip.columns, clip.values), clip.columns)
+        most = (1 - WITHIN) * np.minimum(goal.largest(measure.points), self.max_error)
+        most = np.minimum(most, _OF_MEAN * unpack_errors(encoded.header)[1])
+        values = self.decode(encoded.header, encoded.chunks, clip.columns)
+        for more in range(_MOST_MORE_DIGITS):
+            text = np.column_stack(
+                [each.finer(more).rounded(values[:, c]) for c, each in enumerate(formats)]
+            )
+            if not (_core.near_errors(measure.core, values, text) > most).any():
+                return more
+        return _MOST_MORE_DIGITS
 
     def parts_of(self, clip: Clip) -> dict[str, list[int]]:
         """Give the joints, or markers, of each part that has a bound of its own."""

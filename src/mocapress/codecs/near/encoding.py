@@ -1,5 +1,6 @@
 """The encoder of ``near``: from a goal to steps and chunks."""
 
+from dataclasses import replace
 from math import inf, log, log2
 
 import numpy as np
@@ -9,13 +10,21 @@ from mocapress import _core
 from mocapress.codecs.contract import Chunk, Encoded
 from mocapress.codecs.markers import kept_of
 from mocapress.codecs.near.figure import figure_of, tree_of
-from mocapress.codecs.near.goal import MEAN_OF_MOST, Goal, Measure
-from mocapress.codecs.near.header import COARSE, STEPS_PER_OCTAVE, joints_of, pack_header
+from mocapress.codecs.near.goal import MEAN_OF_MOST, WITHIN, Goal, Measure
+from mocapress.codecs.near.header import (
+    COARSE,
+    STEPS_PER_OCTAVE,
+    joints_of,
+    order_of,
+    pack_header,
+)
 from mocapress.codecs.near.turning import Turning, is_known, known_turnings, nearest, turnings_of
 from mocapress.errors import VerificationError
 from mocapress.motion import Skeleton, Stream
 
-_MOST_STEP = 4096
+_MOST_STEP = 3072
+"""Steps are no finer and no coarser, as exponents: the base of the known figure has to be within
+the bounds of the format, too."""
 SCALE_OF_MEAN = 2.5
 """Where the search for a mean begins."""
 _INNER, _NEXT, _OUTER = 1.04, 1.15, 1.5
@@ -56,15 +65,20 @@ class Encoder:
         budget: float = inf,
     ) -> None:
         self.goal, self.chunk, self.budget = goal, chunk, budget
+        self.order = order_of(stream.columns, skeleton)
+        if self.order:
+            columns = tuple(stream.columns[c] for c in self.order)
+            stream = replace(stream, values=stream.values[:, self.order], columns=columns)
         self.values = np.ascontiguousarray(stream.values, dtype=np.float64)
         figure = figure_of(skeleton, stream.columns, self.values)
         self.measure = Measure(goal, figure, stream.columns)
-        self.value_most = np.full(stream.channels, max_error)
+        self.value_most = np.full(stream.channels, WITHIN * max_error)
         if figure and goal.in_space:  # what moves no joint counts as a part of the figure's size
             moving = [figure.moves(column) for column in figure.columns]
-            self.value_most[~np.array(moving, bool)] = min(max_error, goal.most / goal.size)
+            apart = WITHIN * min(max_error, goal.most / goal.size)
+            self.value_most[~np.array(moving, bool)] = apart
         self.kept = np.zeros(self.values.shape, np.uint8)
-        self.most = np.full(self.measure.points, goal.most)
+        self.most = WITHIN * goal.largest(self.measure.points)
         self.shares = self._shares(skeleton)
         self.parts = self._parts()
         self.weights = self.parts**-2
@@ -98,7 +112,11 @@ class Encoder:
             scale = self.goal.mean * SCALE_OF_MEAN
             self.turnings = turnings_of(self.measure, self.columns, self.values, scale)
         self.curves = _core.near_turned_measure(self.measure.core, self.turnings)
-        self.exponents = self._levers()
+        frames = self.values[:: max(1, len(self.values) // _SAMPLE)]
+        moderate = np.where(np.abs(frames) < 1e9, frames, 0.0)
+        self.sample = _core.near_turned(self.measure.core, moderate, self.turnings)
+        self.own_levers = self._levers(self.usual) if known else np.zeros(self.values.shape[1])
+        self.exponents = self._exponents()
 
     def encoded(self, scale: float, chunks: list[Chunk], errors: NDArray[np.float64]) -> Encoded:
         """Give header and chunks; every bound is checked on what they decode to.
@@ -130,21 +148,23 @@ class Encoder:
             chunks.append(Chunk(first, stop - first, payload))
         return Encoded(self.header(1.0, (0.0, 0.0)), tuple(chunks))
 
-    def _levers(self) -> NDArray[np.int64]:
-        """Give what each channel's step is coarser than the scale, (C,) in 64ths of an octave."""
-        frames = self.values[:: max(1, len(self.values) // _SAMPLE)]
-        moderate = np.where(np.abs(frames) < 1e9, frames, 0.0)
-        turned = _core.near_turned(self.measure.core, moderate, self.turnings)
-        squares = _core.near_levers(self.curves, turned, self.weights)
+    def _levers(self, weights: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Give how far channels move points that count so much, (C,), as logarithms.
+
+        NaN for a channel that moves nothing.
+        """
+        squares = _core.near_levers(self.curves, self.sample, weights)
         with np.errstate(divide="ignore"):
-            levers = 0.5 * np.log2(squares)
-        told = np.isfinite(levers) & (squares > 1e-8)
-        if self.known:
-            usual = _core.near_levers(self.curves, turned, self.usual)
-            levers[told] -= 0.5 * np.log2(usual[told])
-            levers[~told] = 0
-        else:  # a channel that moves nothing has the step of one that moves a little
-            levers[~told] = levers[told].min(initial=0.0)
+            levers: NDArray[np.float64] = 0.5 * np.log2(squares)
+        levers[~(np.isfinite(levers) & (squares > 1e-8))] = np.nan
+        return levers
+
+    def _exponents(self) -> NDArray[np.int64]:
+        """Give what each channel's step is coarser than the scale, (C,) in 64ths of an octave."""
+        levers = self._levers(self.weights) - self.own_levers
+        # A channel that moves nothing has the step of one that moves a little, or the figure's own.
+        nothing = 0.0 if self.known else np.fmin.reduce(levers, initial=0.0)
+        levers[np.isnan(levers)] = nothing
         exponents: NDArray[np.int64] = np.rint(-levers * STEPS_PER_OCTAVE / COARSE).astype(np.int64)
         exponents *= COARSE
         if self.known:
@@ -168,14 +188,13 @@ class Encoder:
         usual = self.goal.most if self.goal.most < inf else self.goal.mean / MEAN_OF_MOST
         parts = np.ones(self.measure.points)
         for joint, most in self.goal.of_joints:
-            self.most[joint] = most
             parts[joint] = most / usual
         return parts
 
     def weigh(self, weights: NDArray[np.float64]) -> None:
-        """Let errors of points count by these weights, (P,)."""
+        """Let errors of points count by these weights, (P,), and steps follow them."""
         self.weights = weights * ((self.parts**-2).mean() / weights.mean())
-        self.exponents = self._levers()
+        self.exponents = self._exponents()
 
     def excess(self, errors: NDArray[np.float64]) -> NDArray[np.float64]:
         """Give how many times its share the mean of each point is, (P,)."""
@@ -189,12 +208,10 @@ class Encoder:
         return log(mean / self.goal.mean) if mean > 0 else -inf
 
     def _steps(self, scale: float) -> list[int]:
-        base = round(log2(scale) * STEPS_PER_OCTAVE)
-        if self.known:
-            return [base + int(each) for each in self.exponents]
-        low = -_MOST_STEP + (base + _MOST_STEP) % COARSE
-        high = _MOST_STEP - (_MOST_STEP - base) % COARSE
-        return [int(each) for each in np.clip(base + self.exponents, low, high)]
+        steps = round(log2(scale) * STEPS_PER_OCTAVE) + self.exponents
+        beyond = np.maximum(np.abs(steps) - _MOST_STEP, 0)
+        steps -= (np.sign(steps) * np.ceil(beyond / COARSE) * COARSE).astype(np.int64)
+        return [int(each) for each in steps]
 
     def _part(self, scale: float) -> float:
         """Give the mean error as a part of the figure's size: the goal's, or about what it will be.
@@ -233,6 +250,7 @@ class Encoder:
             self.measure.uses_radians,
             self._start(scale),
             self.known,
+            self.order,
         )
 
     def _payload(

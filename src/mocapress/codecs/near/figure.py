@@ -66,10 +66,9 @@ def _figure_of_markers(columns: Sequence[Column], values: Array) -> Figure | Non
             moving[c] = replace(moving[c], joint=index, kind=f"t{moving[c].kind}")
     unit = markers.centimetres(columns)
     places = _places(markers, values)
-    size = 0.0
-    if places.size and np.isfinite(places).any():
-        spread = np.nanmax(places, axis=1) - np.nanmin(places, axis=1)
-        size = float(np.nanmedian(spread.max(axis=1)))
+    spread = np.fmax.reduce(places, axis=1) - np.fmin.reduce(places, axis=1)
+    known = spread[np.isfinite(spread).all(axis=1)].max(axis=1)
+    size = float(np.median(known)) if len(known) else 0.0
     # A single marker is no figure.
     size = size or (HEIGHT / unit if unit else 1.0)
     return Figure(Skeleton(joints), tuple(moving), size, unit, 0.0, markers)

@@ -4,6 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, radians
 
+import numpy as np
+from numpy.typing import NDArray
+
 from mocapress import _core
 from mocapress.codecs.near.figure import HEIGHT, Figure
 from mocapress.codecs.near.parts import joints_of_parts
@@ -16,6 +19,8 @@ MEAN_OF_MOST = 0.34
 """What mean error goes with a largest one, where none is asked for."""
 MEAN_OF_FINE_MOST, FINE = 0.42, 3e-3
 """The same where the largest is less than this part of a figure's size: corrections cost less."""
+WITHIN = 0.999
+"""What an encoder takes of a bound; rounding of printed numbers may take the rest."""
 MOST_OF_PRECISION = 1.6
 """ACL's own largest error at a precision, at most times this."""
 
@@ -39,6 +44,13 @@ class Goal:
     is_mean_asked: bool = False
     """Whether the mean is to be that of all errors as they are; otherwise, where joints have bounds
     of their own, each error counts beside its bound."""
+
+    def largest(self, points: int) -> NDArray[np.float64]:
+        """Give the largest error that each point may have, (P,)."""
+        largest = np.full(points, self.most)
+        for joint, most in self.of_joints:
+            largest[joint] = most
+        return largest
 
 
 def goal_of(
@@ -78,7 +90,7 @@ def goal_of(
             what = "a length" if figure else "a length, for a clip without a skeleton,"
             raise ParameterError(
                 f"near: {what} cannot be kept: the units of the file are not known",
-                expected="quality=1 to 9" if figure else "degrees, such as max=0.1deg",
+                expected="quality=1 to 9" if figure else "degrees, such as max=0.1deg, or no unit",
                 found=f"{each.number:g}{each.unit}",
             )
         return each.number * LENGTHS[each.unit] / figure.unit

@@ -45,6 +45,27 @@ def joints_of(columns: Sequence[Column], skeleton: Skeleton | None) -> Joints:
     return joints
 
 
+def order_of(columns: Sequence[Column], skeleton: Skeleton | None) -> list[int]:
+    """Give the columns in the order of the hierarchy; nothing where none is below a later one.
+
+    Errors of a channel can be made good by those below it only, so that these have to follow it.
+    """
+    if skeleton is None:
+        return []
+    none = len(skeleton.joints)
+    joints = [c.joint if 0 <= c.joint < none else none for c in columns]
+    last = [-1] * (none + 1)
+    for place, joint in enumerate(joints):
+        last[joint] = place
+    above = [-1] * (none + 1)  # the last column of any joint above
+    for joint, one in enumerate(skeleton.joints):
+        if one.parent >= 0:
+            above[joint] = max(above[one.parent], last[one.parent])
+    if all(place > above[joint] for place, joint in enumerate(joints)):
+        return []
+    return sorted(range(len(joints)), key=joints.__getitem__)
+
+
 def pack_header(
     in_space: bool,
     short_spans: bool,
@@ -56,6 +77,7 @@ def pack_header(
     radians: bool = False,
     start: int = 0,
     known: bool = False,
+    order: Sequence[int] = (),
 ) -> bytes:
     """Make the header.
 
@@ -82,6 +104,8 @@ def pack_header(
         With which of the learned starts coders begin, from 1 on; 0 for none.
     known
         Whether the figure is the known one.
+    order
+        Which of the file's columns each is; nothing where they are in its order.
 
     """
     base = steps[0] if steps else 0
@@ -98,6 +122,7 @@ def pack_header(
         + (4 if radians else 0)
         + (8 if known else 0)
         + (16 if any(finer) else 0)
+        + (32 if len(order) else 0)
     )
     writer.integer(knot - 1)
     writer.signed(base)
@@ -105,8 +130,10 @@ def pack_header(
     if known:
         writer.integer(sum(each[4] << i for i, each in enumerate(turnings)))
         if any(finer):
-            writer.bytes(_core.near_finer(finer))
+            writer.bytes(_core.near_differences(finer))
         return bytes(writer.data)
+    if len(order):
+        writer.bytes(_core.near_differences((np.diff(order, prepend=-1) - 1).tolist()))
     apart = np.diff(np.array(steps, np.int64), prepend=base) // COARSE
     writer.bytes(_core.near_columns(apart.tolist(), joints.of_column, joints.parents, turnings))
     return bytes(writer.data)
@@ -123,7 +150,7 @@ def unpack_errors(header: bytes) -> tuple[bool, float, float]:
     """
     reader = Reader(header, "header of near")
     mean, largest = reader.numbers(2)
-    return reader.integer(31) % 2 == 1, mean, largest
+    return reader.integer(63) % 2 == 1, mean, largest
 
 
 def _rounded_up(error: float) -> float:
