@@ -69,6 +69,18 @@ def test_a_salvaged_file_leaves_the_lost_rows_out(blob: bytes, chunk: int, tmp_p
 
 
 @pytest.mark.filterwarnings("ignore::mocapress.MotionWarning")
+def test_a_salvaged_lossy_file_leaves_the_lost_rows_out(tmp_path: Path) -> None:
+    path = tmp_path / "walk.amc"
+    path.write_bytes(AMC)
+    blob = mp.compress(path, "near:max=0.1deg,chunk=100")
+    rows = mp.decompress(blob).split(b"\nroot ")
+    found = mp.decompress(damaged(blob, 1), salvage=True).split(b"\nroot ")
+    assert (len(rows), len(found)) == (401, 301)
+    assert found[101:] == rows[201:]
+    assert b"nan" not in b"".join(found)
+
+
+@pytest.mark.filterwarnings("ignore::mocapress.MotionWarning")
 def test_a_chunk_that_is_gone_is_found(blob: bytes) -> None:
     """The end says where it stood: then nothing fits, and the file is walked."""
     hurt = damaged(blob, 1, cut=True)

@@ -37,6 +37,14 @@ def test_errors_are_shown_and_bounded(tmp_path: Path) -> None:
     assert "expected errors up to" in bounded.stderr
 
 
+def test_of_two_files_the_damaged_one_is_named(tmp_path: Path) -> None:
+    cut = tmp_path / "cut.mcz"
+    cut.write_bytes(mp.compress(WALK)[:900])
+    result = mocapress("compare", WALK, cut)
+    assert result.exit_code != 0
+    assert f"{cut}, byte 900: the file is cut off" in result.stderr
+
+
 def test_clips_that_do_not_match_are_wrong_usage() -> None:
     result = mocapress("compare", WALK, SAMPLES / "cmu_01_01.amc")
     assert result.exit_code == 2

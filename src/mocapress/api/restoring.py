@@ -137,7 +137,7 @@ def _printed_parts(opened: Opened, original: Original) -> Iterator[bytes]:
     size, source = original.size, opened.source
     source.allow(sum(opened.bytes_of(i, opened.frames(i)) for i in range(len(opened.streams))))
     own = own_layout(original)
-    if own is None and opened.salvage and opened.codec().lossless:
+    if own is None and opened.salvage:
         # Which rows are lost must be known before the first is printed.
         yield printed(opened, original, opened.rows())
         return

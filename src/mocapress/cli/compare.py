@@ -52,7 +52,7 @@ def compare(
     from mocapress.cli.models import open_models, places_for
     from mocapress.cli.pictures import check_kind, write_picture
     from mocapress.difference_picture import draw_difference
-    from mocapress.errors import VerificationError
+    from mocapress.errors import MocapressError, VerificationError
     from mocapress.motion.comparing import compare as measured
     from mocapress.storage import check_targets
 
@@ -67,8 +67,11 @@ def compare(
         for path in (first, second):
             source = Job(path, path.parent).opened(limit)
             places = places_for(job, given)
-            clip = api.read_source(source, asf, models=places, strict=not lenient)
-            clips.append(clip)
+            try:
+                clips.append(api.read_source(source, asf, models=places, strict=not lenient))
+            except MocapressError as error:
+                error.file = error.file or str(path)
+                raise
         found = measured(*clips)
         if picture is not None:
             drawn = draw_difference(clips[0], clips[1], found, (str(first), str(second)))
