@@ -160,6 +160,28 @@ def test_other_signals_do_as_ctrl_c(stopped: Callable[..., tuple[int, bytes, byt
     assert (code, error) == (143, b"mocapress: interrupted; 1 of 2 files done\n")
 
 
+def test_a_signal_ends_a_command_that_nobody_reads(clips: Path) -> None:
+    """What is to be said of it fails; yet nothing may wait for threads that wait for the end."""
+    code = (
+        "import os, time\nfrom mocapress.cli.report import Report\n"
+        "fsync = os.fsync\n"
+        "def slow(d):\n print('storing', flush=True); time.sleep(0.5); fsync(d)\n"
+        "def gone(*_):\n raise BrokenPipeError\n"
+        "os.fsync = slow\nReport.interrupt = gone\n"
+        "from mocapress.cli import main; main()"
+    )
+    words = [sys.executable, "-c", code, "compress", "-f", "-j", "2", "a.amc", "b.amc", "c.amc"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as child:
+        assert child.stdout is not None
+        assert child.stdout.readline().startswith(b"storing")
+        child.send_signal(signal.SIGTERM)
+        try:
+            child.communicate(timeout=60)
+        finally:
+            child.kill()
+    assert child.returncode == 143
+
+
 def test_ctrl_c_lets_a_file_be_stored(clips: Path) -> None:
     code = (
         "import os, sys, time\nfsync = os.fsync\n"

@@ -182,3 +182,18 @@ def test_near_rounds_whole_numbers_to_the_nearest() -> None:
     assert (found.valid == decoded.valid).all()
     rounding = np.abs(found.positions - decoded.positions)[found.valid]
     assert 0 < rounding.max() <= 0.05 + 1e-9
+
+
+def test_near_knows_markers_beside_such_as_are_never_seen() -> None:
+    lines = (SAMPLES / "markers.trc").read_text().splitlines(keepends=True)
+    rows = [line.rstrip("\n").split("\t") for line in lines]
+    for row in rows[6:]:
+        if len(row) > 8:
+            row[5:8] = ["", "", ""]  # the second marker
+    made = "".join("\t".join(row) + "\n" for row in rows).encode()
+    original = mp.markers(mp.read(made))
+    assert not original.valid[:, 1].any()
+    found = mp.markers(mp.read(mp.decompress(mp.compress(made, "near:max=4mm"))))
+    assert (found.valid == original.valid).all()
+    away = np.linalg.norm(found.positions - original.positions, axis=2)
+    assert 0.1 < away[original.valid].max() <= 4

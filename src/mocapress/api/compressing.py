@@ -215,9 +215,9 @@ def compress_parts(
             found, failure = first_that_works(codec, work)
             warning = "; ".join(filter(None, (failure, warning))) or None
     kept = smallest(source, parts, found.blob if found else None, codec, notes)
-    close = codec.can.stands_back and parts is not None and len(kept) >= parts.clip.values.size
-    if found is not None and found.loss and close:
-        # A byte for a number: the bound is so close that the lossless way may take less.
+    close = parts is not None and 2 * len(kept) >= parts.clip.values.size
+    if found is not None and found.loss and codec.can.stands_back and close:
+        # From four bits a number on, the lossless way may take less.
         exact = compress_parts(
             source,
             parts,
@@ -246,13 +246,16 @@ def with_names(source: Source, parts: Split) -> Clip:
         told = source.described(source.format, parts.stored, clip).main
     except FormatError:
         return clip
-    more = clip.channels - told.channels
+    columns, values = told.columns, told.values
+    if clip.channels < len(columns):  # a table does not store columns without any number
+        seen = np.flatnonzero(np.isfinite(values).any(axis=0))
+        columns, values = tuple(columns[c] for c in seen.tolist()), values[:, seen]
+    more = clip.channels - len(columns)
     if more < 0 or told.frames != clip.frames:
         return clip
-    columns = told.columns
     raw = clip.values[:, more:]
-    known = np.isfinite(raw) & np.isfinite(told.values) & (raw != 0) & (told.values != 0)
-    times = float(np.median(told.values[known] / raw[known])) if known.any() else 1.0
+    known = np.isfinite(raw) & np.isfinite(values) & (raw != 0) & (values != 0)
+    times = float(np.median(values[known] / raw[known])) if known.any() else 1.0
     if abs(times - 1) > _ROUNDED:
         scaled = (f"{times!r} {column.unit}" if column.unit else "" for column in columns)
         columns = tuple(

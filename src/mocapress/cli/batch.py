@@ -8,7 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -311,18 +311,21 @@ def _stop(
 ) -> NoReturn:
     """Let what is being stored be stored, report it, and end whatever else is running."""
     waited = storing.close() - report.reported
-    while waited or not done.empty():
-        job = done.get()
-        if isinstance(job, int):  # asked twice
-            break
-        report.add(job)
-        waited.discard(job)
-    if close:
-        close()
-    report.interrupt(jobs)
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(128 + signal_number)
+    try:
+        while waited or not done.empty():
+            job = done.get()
+            if isinstance(job, int):  # asked twice
+                break
+            waited.discard(job)
+            with suppress(OSError):  # whoever read what is said may be gone
+                report.add(job)
+        if close:
+            close()
+        report.interrupt(jobs)
+        sys.stdout.flush()
+        sys.stderr.flush()
+    finally:  # other threads wait for what was closed, and would be waited for
+        os._exit(128 + signal_number)
 
 
 @contextmanager
