@@ -61,7 +61,7 @@ class Layout:
                 bits = int(struct.unpack("<Q", struct.pack("<d", number))[0])
                 return bits >> 63 << 31 | 0x7FC00000 | bits >> 29 & 0x3FFFFF
             return bits32_within(4 * number if self.processor == DEC else number)
-        return 0 if math.isnan(number) else int(number) & 0xFFFF
+        return 0 if not abs(number) <= 2**15 else round(number) & 0xFFFF
 
     def _bytes(self, word: int) -> bytes:
         if not self.floats:

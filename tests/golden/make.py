@@ -186,6 +186,7 @@ FILES: dict[str, tuple[bytes, str, dict[str, Any]]] = {
     "v1_odd.csv": (table_files.odd_table(), "exact:level=2,chunk=60", {}),
     "v1_commas.csv": (table_files.commas(), "exact:level=2,chunk=60", {}),
     "v1_cells.csv": (table_files.cells(), "exact:level=2,chunk=60", {}),
+    "v1_archive_near.npz": (array_files.npz(poses=array_files.wave(400, 12)), "near:max=0.01", {}),
     "v1_kinds.npz": (array_files.every_kind(), "exact:level=2,chunk=60", {}),
     "v1_columns.npy": (array_files.by_columns(), "exact:level=3,chunk=60", {}),
     "v1_decimals.npy": (array_files.stored_decimals(), "exact:level=2,chunk=60", {}),
