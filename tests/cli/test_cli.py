@@ -14,6 +14,7 @@ import pytest
 from running import mocapress, process
 
 import mocapress as mp
+from mocapress.cli import main
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 GOLDEN = Path(__file__).parents[1] / "golden"
@@ -485,3 +486,15 @@ def test_markers_are_converted_to_every_kind_and_back(tmp_path: Path) -> None:
     refused = mocapress("convert", SAMPLES / "markers.c3d", "-o", tmp_path / "a.bvh")
     assert refused.exit_code == 1
     assert "no skeleton" in refused.stderr
+
+
+def test_ctrl_c_before_a_command_begins_ends_without_a_traceback(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def interrupted(**_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("mocapress.cli.app.app", interrupted)
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 130

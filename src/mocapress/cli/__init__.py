@@ -9,6 +9,13 @@ import warnings
 
 def main() -> None:
     """Run the command line; no traceback reaches a user who has not asked for one."""
+    try:
+        _run()
+    except KeyboardInterrupt:  # before a command that says what was done, or behind it
+        sys.exit(130)
+
+
+def _run() -> None:
     from mocapress.cli.app import app
     from mocapress.cli.warned import say_at_once
 

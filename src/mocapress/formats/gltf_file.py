@@ -156,7 +156,7 @@ class Gltf:
         if kind.kind != "f" and accessor.facts.get("normalized") is True:
             numbers = np.maximum(numbers / np.iinfo(kind).max, -1.0)
         if not np.isfinite(numbers).all():
-            raise accessor.fault("bufferView", "finite numbers", "others")
+            raise accessor.fault("bufferView", "finite numbers", "an infinite one, or none")
         return numbers
 
     def _buffer(self, index: int) -> bytes:
