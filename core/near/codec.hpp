@@ -45,8 +45,9 @@ void code_turnings(Side& side, const Joints& joints, std::vector<Turning>& turni
   }
 }
 
-// For each column a number that is 0 for most: by how many times 32/64 octaves its step is finer than
-// that of the known figure, beyond the column before; or how many columns of the file it skips.
+// For each column a number that is 0 for most: by how many times 32/64 octaves its step is finer
+// than that of the known figure, beyond the column before; or how many columns of the file it
+// skips.
 template <class Side>
 void code_differences(Side& side, std::vector<std::int64_t>& apart) {
   Difference<6> differences;
