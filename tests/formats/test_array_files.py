@@ -4,6 +4,7 @@ import contextlib
 import io
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -145,7 +146,7 @@ class Unseekable(io.RawIOBase):
     def __init__(self, target: io.BytesIO) -> None:
         self.target = target
 
-    def write(self, data: bytes) -> int:
+    def write(self, data: Any) -> int:
         return self.target.write(data)
 
     def writable(self) -> bool:

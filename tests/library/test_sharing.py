@@ -189,6 +189,20 @@ def test_a_lossy_clip_stays_what_it_is(library: Library, take: Take) -> None:
     library.close()
 
 
+def test_a_file_that_shares_lossy_numbers_is_printed_with_the_same_digits(
+    library: Library, take: Take
+) -> None:
+    header, rows = take
+    data = amc_of(header, rows[:300])
+    for name in ("a.amc", "b.amc"):
+        library.add(data, name, codec="near:max=0.001deg")
+    texts = {library.read_bytes(name) for name in ("a.amc", "b.amc")}
+    assert len(texts) == 1
+    errors = mp.read(texts.pop()).values - mp.read(data).values
+    assert 0 < np.abs(errors).max() <= 0.001
+    library.close()
+
+
 def test_recompressing_keeps_every_number(library: Library, take: Take) -> None:
     header, rows = take
     files = {"take.amc": amc_of(header, rows[:600]), "cut.amc": amc_of(header, rows[100:400])}

@@ -36,7 +36,7 @@ from mocapress.formats import Split
 from mocapress.formats.layout_record import write_layout
 from mocapress.formats.patterns import References
 from mocapress.models import load_model
-from mocapress.motion import Clip
+from mocapress.motion import Clip, Column
 from mocapress.source import Named, Source
 
 # Below this size the general-purpose way is tried as well.
@@ -191,10 +191,9 @@ def compress_parts(
                 clip = with_names(source, parts) if way.can.names else parts.clip
                 streams = coded_streams(clip, way, own)
                 printed = parts
-                if not way.lossless and parts.stored is None:
-                    layout = parts.layout.of_other_numbers(clip.values)
+                if not way.lossless:
                     finer = as_printed(parts.clip, way, streams[0].encoded)
-                    printed = parts._replace(clip=finer, layout=layout)
+                    printed = with_other_numbers(parts, finer.columns)
 
                 def checked(said: Mapping[str, str] | None) -> Compressed:
                     made = motion_file(
@@ -231,6 +230,20 @@ def compress_parts(
     if found is None or kept is not found.blob:
         found = Compressed(kept, None)
     return replace(found, warning=warning)
+
+
+def with_other_numbers(parts: Split, columns: Sequence[Column]) -> Split:
+    """Give a file taken apart as it prints other numbers, with the digits of columns like its own.
+
+    A layout of the format's own says itself how numbers are printed.
+    """
+    if parts.stored is not None:
+        return parts
+    clip = parts.clip
+    own = zip(clip.columns, columns, strict=True)
+    printed = tuple(replace(column, decimal=other.decimal) for column, other in own)
+    layout = parts.layout.of_other_numbers(clip.values)
+    return parts._replace(clip=clip.with_columns(printed), layout=layout)
 
 
 def with_names(source: Source, parts: Split) -> Clip:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapress.api.clips import compress_clip
-from mocapress.api.compressing import compress_parts, motion_file, unfit
+from mocapress.api.compressing import compress_parts, motion_file, unfit, with_other_numbers
 from mocapress.api.encoding import coded_streams
 from mocapress.api.opening import Opened
 from mocapress.api.restoring import contents
@@ -201,6 +201,10 @@ class Coder:
         rest = without_runs(parts.clip, runs)
         model = self.model if way is self.codec else None
         streams = coded_streams(rest, way, model, parts.clip)
+        if not way.lossless:  # it has the numbers of another clip, and is printed as that
+            like = OpenedClip(self.db, runs[0].source, self.models)
+            parts = with_other_numbers(parts, like.streams[0].columns)
+            rest = rest.with_columns(parts.clip.columns)
         blob = motion_file(parts._replace(clip=rest), source, streams, model)
         opened = Opened(Source(blob), [model] if model else [])
         for index, (coded, stream) in enumerate(zip(streams, rest.streams.values(), strict=True)):
