@@ -59,7 +59,7 @@ def with_right_digests(archive: bytes) -> bytes:
         own = header + 14
         if flags & 8:  # pragma: no cover
             own = begin + size + (4 if archive.startswith(b"PK\7\x08", begin + size) else 0)
-        if kind == 0:
+        if kind == 0:  # pragma: no branch
             digest = struct.pack("<I", zlib.crc32(archive[begin : begin + size]))
             changed[own : own + 4] = changed[entry + 16 : entry + 20] = digest
         entry += 46 + sum(lengths)
