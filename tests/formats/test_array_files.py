@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 import mocapress as mp
 from mocapress.formats.array_layout import KINDS, read_layout
 from mocapress.formats.array_splitting import split_npy, split_npz
+from mocapress.formats.npz_digests import with_right_digests
 
 
 def test_every_kind_comes_back_and_is_read() -> None:
@@ -140,6 +141,19 @@ def test_an_archive_that_comes_back_with_other_numbers_can_be_opened(streamed: b
         assert np.array_equal(archive["betas"], np.arange(16.0))
     assert 0 < errors.max() <= 0.01
     assert np.array_equal(mp.read(restored).values, mp.load(blob).values)
+
+
+def test_what_is_no_archive_is_refused_and_never_grows() -> None:
+    data = npz(poses=wave(40, 3))
+    random = np.random.default_rng(5)
+    for at in random.integers(0, len(data), 400):
+        forged = bytearray(data)
+        forged[at] ^= 1 << random.integers(8)
+        for one in (bytes(forged), data[:at]):
+            with contextlib.suppress(mp.CorruptError):
+                assert len(with_right_digests(one)) == len(one)
+    with pytest.raises(mp.CorruptError, match="no archive"):
+        with_right_digests(data[:100])
 
 
 class Unseekable(io.RawIOBase):
